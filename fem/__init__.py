@@ -1,0 +1,1 @@
+"""Finite elements of the actuator; numpy and scipy only."""

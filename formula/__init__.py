@@ -1,0 +1,1 @@
+"""The theta(alpha, openF, P) of a joint: formula, table, look-up and inverse."""

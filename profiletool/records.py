@@ -1,0 +1,185 @@
+"""The frozen records that are handed from stage to stage.
+
+Frames
+------
+Picture frame: pixels, x to the right, y down, pixel centres at whole numbers, so that a picture
+W wide spans -0.5 .. W - 0.5.
+Object frame: mm, x to the right, y up. For a picture its origin is the object's top middle; a
+vector profile keeps its own coordinates.
+
+A profile is travelled from the top of the object to its base. For ``side == "left"`` the object
+lies to the left of the travel direction (the tube to its right), for ``"right"`` the other way
+round. Turns and curvature count positive where the object is convex, so they do not depend on
+the side.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+Side = Literal["left", "right"]
+
+MM_PER_INCH = 25.4
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A decoded picture, upright.
+
+    Attributes
+    ----------
+    rgb : (H, W, 3) uint8
+    alpha : (H, W) uint8, or None
+        None where the file has no alpha channel, or one that is opaque everywhere.
+    mm_per_px : float or None
+        The resolution stored in the file, where it means something.
+    format : str
+        As Pillow names it: "PNG", "JPEG", ...
+    """
+
+    rgb: NDArray[np.uint8]
+    alpha: NDArray[np.uint8] | None
+    mm_per_px: float | None
+    format: str
+
+
+@dataclass(frozen=True)
+class Silhouette:
+    """The outline of the one object in a picture.
+
+    Attributes
+    ----------
+    contour_px : (N, 2)
+        Closed polygon (first point not repeated) in the picture frame, sub-pixel, ordered so
+        that it runs counter-clockwise as seen (down the left side).
+    mask : (H, W) bool
+        The object, holes filled.
+    method : str
+        What found it: "alpha matte", "plain ground" or "grabcut".
+    noise_px : float
+        Standard deviation of the contour's position, normal to itself.
+    touches : frozenset of {"left", "right", "top", "bottom"}
+        The edges of the frame that the object runs into.
+    """
+
+    contour_px: FloatArray
+    mask: NDArray[np.bool_]
+    method: str
+    noise_px: float
+    touches: frozenset[str]
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Millimetres per pixel, and where that number comes from."""
+
+    mm_per_px: float
+    source: Literal["height", "width", "mm-per-px", "marker", "resolution", "vector"]
+
+
+@dataclass(frozen=True)
+class Joint:
+    """One joint of an actuator, as a row of the paper's Table 5.
+
+    theta is a magnitude; ``alpha_center_deg`` tells the direction (270 toward the object, 90
+    away from it). ``F_mm`` runs from this joint's centre to the next one's, the last one's to
+    the tube's end. ``centre_mm`` is the joint's place along the tube, from the clamped end.
+    """
+
+    number: int
+    F_mm: float
+    openF_mm: float
+    alpha_closed_deg: float
+    alpha_center_deg: float
+    theta_target_deg: float
+    theta_formula_deg: float
+    theta_fe_deg: float | None
+    centre_mm: float
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where a design comes from."""
+
+    file: str
+    sha256: str
+    mm_per_px: float | None
+    scale_source: str
+    side: Side
+    profile_length_mm: float
+    bridged_share: float
+
+
+@dataclass(frozen=True)
+class Tube:
+    """The silicone tube; ``length_mm`` from the clamped end to the closed one."""
+
+    outer_diameter_mm: float
+    wall_mm: float
+    root_mm: float
+    length_mm: float
+
+
+@dataclass(frozen=True)
+class Gauze:
+    """The gauze: ``seam_deg`` is the angular position of the glue and weld line."""
+
+    pitch_mm: float
+    thread_mm: float
+    turns: int
+    seam_deg: float
+
+
+@dataclass(frozen=True)
+class FormulaRef:
+    """The formula a design was made with."""
+
+    name: str
+    sha256: str
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Where the object-facing line starts and which way it points (object frame)."""
+
+    x_mm: float
+    y_mm: float
+    heading_deg: float
+
+
+@dataclass(frozen=True)
+class Misfit:
+    """Distance between the deformed object-facing line and the target profile."""
+
+    rms_mm: float
+    max_mm: float
+
+
+@dataclass(frozen=True)
+class Fit:
+    """The misfit as the formula and as FE predict it."""
+
+    formula: Misfit
+    fe: Misfit | None
+
+
+@dataclass(frozen=True)
+class Design:
+    """A whole actuator: what design.json holds."""
+
+    source: Source
+    tube: Tube
+    gauze: Gauze
+    formula: FormulaRef
+    pressure_bar: float
+    joints: tuple[Joint, ...]
+    base_pose: Pose
+    fit: Fit
+    feasible: bool
+    verified: bool
+    warnings: tuple[str, ...]

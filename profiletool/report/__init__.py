@@ -1,0 +1,1 @@
+"""A design to what a person looks at."""
