@@ -1,0 +1,30 @@
+"""What all tests share."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+@pytest.fixture(scope="session")
+def samples() -> Path:
+    """The sample pictures of this repository."""
+    return ROOT / "samples"
+
+
+@pytest.fixture(scope="session")
+def shared() -> Path:
+    """Reference data kept beside the repository; tests that need it skip where it is absent.
+
+    PROFILETOOL_NEED_SHARED=1 turns the skip into a failure, so that CI cannot pass without it.
+    """
+    folder = ROOT.parent / "shared"
+    if not folder.is_dir():
+        if os.environ.get("PROFILETOOL_NEED_SHARED") == "1":
+            pytest.fail(f"{folder} is absent, and PROFILETOOL_NEED_SHARED=1 demands it")
+        pytest.skip("needs the reference data in ../shared")
+    return folder
