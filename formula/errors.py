@@ -1,0 +1,9 @@
+"""What can go wrong in this package."""
+
+
+class OutOfRange(ValueError):
+    """A wanted value lies outside what the formula covers; the message names the limit."""
+
+
+class BadFormula(ValueError):
+    """A formula file does not hold a formula."""
