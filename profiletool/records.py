@@ -83,6 +83,64 @@ class Scale:
 
 
 @dataclass(frozen=True)
+class Profile:
+    """The target of the object-facing line: the stretch that the tube can follow.
+
+    Attributes
+    ----------
+    points : (N, 2) mm, object frame, from the top down, equally spaced
+    s : (N,) mm
+        Arc length from the first point.
+    heading : (N,) rad
+        Direction of travel, counter-clockwise from +x, unwrapped.
+    curvature : (N,) 1/mm
+        Positive where the object is convex.
+    bridged : (N,) bool
+        Where the tube spans a groove of the object instead of touching it.
+    side : "left" or "right"
+    outline : (M, 2) mm, or None
+        The closed outline of the object; None for an open drawn profile.
+    """
+
+    points: FloatArray
+    s: FloatArray
+    heading: FloatArray
+    curvature: FloatArray
+    bridged: NDArray[np.bool_]
+    side: Side
+    outline: FloatArray | None
+
+    @property
+    def length_mm(self) -> float:
+        """Arc length of the whole profile."""
+        return float(self.s[-1])
+
+    @property
+    def sign(self) -> float:
+        """+1 where a convex turn is counter-clockwise (left side), else -1."""
+        return 1.0 if self.side == "left" else -1.0
+
+
+@dataclass(frozen=True)
+class Material:
+    """The tube and gauze that a design starts from, and what they may be asked for."""
+
+    outer_diameter_mm: float = 20.0
+    wall_mm: float = 2.0
+    root_mm: float = 10.0
+    pitch_mm: float = 2.0
+    thread_mm: float = 0.25
+    turns: int = 2
+    max_pressure_bar: float = 2.0
+    max_length_mm: float = 250.0
+
+    @property
+    def radius_mm(self) -> float:
+        """Outer radius of the tube."""
+        return 0.5 * self.outer_diameter_mm
+
+
+@dataclass(frozen=True)
 class Joint:
     """One joint of an actuator, as a row of the paper's Table 5.
 

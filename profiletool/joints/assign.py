@@ -1,0 +1,165 @@
+"""Steps 5 to 8 of the paper's method: sectors to a table of joints with one common pressure."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from formula.table import PRESSURES_BAR, Table, assign, make_table
+from formula.theta import Formula
+from profiletool.joints.kinematics import Bend, facing_stretch
+from profiletool.joints.sectors import Rules, Sector
+from profiletool.profile.offset import offset_points
+from profiletool.records import FloatArray, Joint, Material, Pose, Profile
+
+TOWARD_DEG, AWAY_DEG = 270.0, 90.0  # alpha_center of a joint that bends toward the object, or away
+WRAP_MM = 2.0  # least wrapped length between two windows: one mesh
+END_WRAP_MM = 4.0  # least wrapped length at the closed end: the paper's mould leaves 4 mm there
+_F_DECIMALS = 1
+
+
+@dataclass(frozen=True)
+class Layout:
+    """The joints of an actuator, where it starts and what it works at."""
+
+    joints: tuple[Joint, ...]
+    root_mm: float
+    length_mm: float
+    pressure_bar: float
+    pose: Pose
+
+    def bends(self) -> tuple[Bend, ...]:
+        """Give the joints as the kinematics sees them, bent by the formula's angles."""
+        return tuple(
+            Bend(
+                joint.centre_mm,
+                joint.openF_mm,
+                np.radians(joint.theta_formula_deg)
+                * (1.0 if joint.alpha_center_deg == TOWARD_DEG else -1.0),
+            )
+            for joint in self.joints
+        )
+
+
+def theta_table(formula: Formula, material: Material) -> Table:
+    """Tabulate the formula for cuts in whole meshes, up to the highest pressure.
+
+    Raises
+    ------
+    formula.errors.OutOfRange
+        When the formula covers none of them.
+    """
+    low, high = formula.openF_range_mm
+    pitch = material.pitch_mm
+    cuts = np.arange(np.ceil(low / pitch - 1e-9), np.floor(high / pitch + 1e-9) + 1.0) * pitch
+    most = min(material.max_pressure_bar, formula.pressure_range_bar[1])
+    pressures = [row for row in PRESSURES_BAR if row <= most + 1e-9]
+    return make_table(formula, openF_mm=cuts.tolist(), pressures_bar=pressures)
+
+
+def joint_rules(table: Table, material: Material, tolerance_mm: float) -> Rules:
+    """Say what a joint can do by the table."""
+    return Rules(
+        radius_mm=material.radius_mm,
+        openF_mm=np.array(table.openF_mm),
+        theta_most_rad=np.radians(table.theta_deg.max(axis=(0, 2))),
+        wrap_mm=WRAP_MM,
+        tolerance_mm=tolerance_mm,
+    )
+
+
+def lay_out(
+    profile: Profile, sectors: Sequence[Sector], table: Table, material: Material
+) -> Layout:
+    """Measure the sectors and look the angles up.
+
+    A turn that no joint reaches is cut back to what one does, so that the best attempt can be
+    drawn; the sectors keep what is missing.
+    """
+    openF = [sector.openF_mm for sector in sectors]
+    most = table.theta_deg.max(axis=(0, 2))[np.searchsorted(table.openF_mm, openF)]
+    turns = np.abs(np.degrees([sector.turn_rad for sector in sectors]))
+    wanted = np.minimum(turns, most).tolist()
+    openF = _nearest_cuts(table, openF, wanted)
+    found = assign(table, openF, wanted)
+    sectors = [replace(sector, openF_mm=cut) for sector, cut in zip(sectors, openF, strict=True)]
+    F = _phalanges(profile, sectors, material.radius_mm)
+    root, pose = _base(profile, sectors[0], material.root_mm)
+    centres = root + np.concatenate([[0.0], np.cumsum(F)])
+    joints = tuple(
+        Joint(
+            number=k + 1,
+            F_mm=float(F[k]),
+            openF_mm=sector.openF_mm,
+            alpha_closed_deg=found.alpha_closed_deg[k],
+            alpha_center_deg=TOWARD_DEG if sector.turn_rad > 0.0 else AWAY_DEG,
+            theta_target_deg=float(abs(np.degrees(sector.turn_rad))),
+            theta_formula_deg=found.theta_deg[k],
+            theta_fe_deg=None,
+            centre_mm=float(centres[k]),
+        )
+        for k, sector in enumerate(sectors)
+    )
+    return Layout(joints, root, float(centres[-1]), found.pressure_bar, pose)
+
+
+def _nearest_cuts(table: Table, openF: Sequence[float], wanted: Sequence[float]) -> list[float]:
+    """Shorten cuts where the table then comes closer to the wanted angle.
+
+    The length of a bending sector is free (step 4), and the columns of a long cut lie up to 14
+    deg apart. The joint with the largest angle keeps its cut: it sets the pressure.
+    """
+    row = table.pressures_bar.index(assign(table, openF, wanted).pressure_bar)
+    excess = table.theta_deg[row] - np.reshape(wanted, (-1, 1, 1))  # joint, openF, alpha
+    least = np.min(np.where(excess >= 0.0, excess, np.inf), axis=2)
+    longer = np.array(table.openF_mm) > np.reshape(openF, (-1, 1)) + 1e-9
+    # Of equally near cuts the longest, which strains the rubber least.
+    best = len(table.openF_mm) - 1 - np.argmin(np.where(longer, np.inf, least)[:, ::-1], axis=1)
+    cuts = [table.openF_mm[k] for k in best]
+    lead = max(range(len(cuts)), key=lambda k: (wanted[k], -openF[k]))
+    cuts[lead] = openF[lead]
+    return cuts
+
+
+def _phalanges(profile: Profile, sectors: Sequence[Sector], radius_mm: float) -> FloatArray:
+    """F of every joint by eq. (10), NS measured on the axis curve: (n,).
+
+    On the profile a bending sector is as long as its cut; one that bends away opens on the
+    object-facing side and covers its opening too.
+    """
+    axis = offset_points(profile, radius_mm)
+    ends = [0.5 * _covered(sector, radius_mm) for sector in sectors]
+
+    def wrapped(start: float, end: float, least: float) -> float:
+        x, y = (np.interp([start, end], profile.s, axis[:, k]) for k in (0, 1))
+        return max(float(np.hypot(x[1] - x[0], y[1] - y[0])), least)
+
+    NS = [
+        wrapped(a.centre + ends[k], b.centre - ends[k + 1], WRAP_MM)
+        for k, (a, b) in enumerate(pairwise(sectors))
+    ]
+    NS.append(wrapped(sectors[-1].centre + ends[-1], profile.length_mm, END_WRAP_MM))
+    half = 0.5 * np.array([sector.openF_mm for sector in sectors])
+    F: FloatArray = np.round(half + NS + np.append(half[1:], 0.0), _F_DECIMALS)
+    return F
+
+
+def _covered(sector: Sector, radius_mm: float) -> float:
+    opening = float(facing_stretch(sector.turn_rad, radius_mm))
+    return sector.openF_mm + max(opening, 0.0)
+
+
+def _base(profile: Profile, first: Sector, root_mm: float) -> tuple[float, Pose]:
+    """Root length and pose: straight along the first line, so that joint 1 lies on its vertex.
+
+    The root is as long as asked, longer only where the profile starts with a longer straight.
+    """
+    heading = float(profile.heading[0])
+    along = np.array([np.cos(heading), np.sin(heading)])
+    lead = float((np.array(first.vertex) - profile.points[0]) @ along)
+    root = round(max(root_mm, lead), _F_DECIMALS)
+    x, y = np.array(first.vertex) - root * along
+    return root, Pose(float(x), float(y), float(np.degrees(heading)))

@@ -1,0 +1,97 @@
+"""What a design misses, in words: reasons why it is infeasible, and warnings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from formula.theta import Formula
+from profiletool.joints.assign import Layout
+from profiletool.joints.sectors import Rules, Sector
+from profiletool.records import Material, Misfit, Profile
+
+_FORMULA_LOW_ABOVE_BAR = 1.2
+_EXCESS_DEG = 3.0
+_LENGTH_SLACK_MM = 0.05
+
+
+def shortfalls(
+    sectors: Sequence[Sector],
+    layout: Layout,
+    rules: Rules,
+    material: Material,
+    formula: Formula,
+    free_count: bool,
+) -> tuple[str, ...]:
+    """Reasons why a design is beyond the physical limits; none where it is within them.
+
+    ``free_count`` is False where the number of joints was asked for: then a polygon off the
+    tolerance is what the user chose, not a limit.
+    """
+    reasons = []
+    tube = (material.outer_diameter_mm, material.wall_mm)
+    if tube != (formula.outer_diameter_mm, formula.wall_mm):
+        reasons.append(
+            f'formula "{formula.name}" holds for a tube of {formula.outer_diameter_mm:g} mm with '
+            f"a wall of {formula.wall_mm:g} mm, not {tube[0]:g} and {tube[1]:g} mm; "
+            "give a formula for this tube with --formula"
+        )
+    for number, sector in enumerate(sectors, start=1):
+        reasons += _sector_shortfalls(number, sector, rules, free_count)
+    if layout.length_mm > material.max_length_mm + _LENGTH_SLACK_MM:
+        reasons.append(
+            f"the tube would be {layout.length_mm:.1f} mm long, more than "
+            f"{material.max_length_mm:g} mm; shorten the stretch with --from and --to, "
+            "or raise --max-length"
+        )
+    return tuple(reasons)
+
+
+def _sector_shortfalls(number: int, sector: Sector, rules: Rules, free_count: bool) -> list[str]:
+    place = f"joint {number}, {sector.centre:.0f} mm down the profile"
+    reasons = []
+    if sector.excess_turn_rad > 0.0:
+        most = np.degrees(rules.theta_most_rad[np.searchsorted(rules.openF_mm, sector.openF_mm)])
+        reasons.append(
+            f"{place}: a turn of {abs(np.degrees(sector.turn_rad)):.0f} deg is more than one "
+            f"joint reaches ({most:.0f} deg with openF {sector.openF_mm:g} mm)"
+        )
+    if sector.missing_mm > 0.0:
+        reasons.append(
+            f"{place}: its cut of {sector.openF_mm:g} mm lacks {2.0 * sector.missing_mm:.1f} mm "
+            "of room; the profile turns too fast here for this tube"
+        )
+    if sector.deviation_mm > rules.tolerance_mm and free_count:
+        reasons.append(
+            f"{place}: the polygon is {sector.deviation_mm:.1f} mm off the profile, more than "
+            f"the tolerance of {rules.tolerance_mm:g} mm"
+        )
+    return reasons
+
+
+def warnings(layout: Layout, profile: Profile, fit: Misfit, tolerance_mm: float) -> tuple[str, ...]:
+    """Say what the user should know of a design that can be made."""
+    found = []
+    if layout.pressure_bar > _FORMULA_LOW_ABOVE_BAR:
+        found.append(
+            f"formula (9) reads low above {_FORMULA_LOW_ABOVE_BAR:g} bar: expect the joints to "
+            f"bend more than it says at {layout.pressure_bar:.2f} bar"
+        )
+    for joint in layout.joints:
+        excess = joint.theta_formula_deg - joint.theta_target_deg
+        if excess > _EXCESS_DEG:
+            found.append(
+                f"joint {joint.number} bends {excess:.1f} deg more than wanted: the table has "
+                f"nothing closer at {layout.pressure_bar:.2f} bar"
+            )
+    share = float(np.mean(profile.bridged))
+    if share > 0.0:
+        found.append(f"{100.0 * share:.0f} % of the profile is bridged: grooves too tight to enter")
+    if fit.max_mm > tolerance_mm:
+        found.append(
+            f"the bent shape is predicted up to {fit.max_mm:.1f} mm off the profile "
+            f"(RMS {fit.rms_mm:.1f} mm): the paper's method takes lengths off the drawing and "
+            "does not correct them"
+        )
+    return tuple(found)

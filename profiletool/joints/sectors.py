@@ -1,0 +1,310 @@
+"""Steps 4 to 6 of the paper's method: a profile to bending and nondeformable sectors.
+
+The *lines of the discretisation* touch the profile at break points, one between every two joints
+and one at each end. Two lines that follow each other meet where the curvature between their break
+points is centred (exactly so for small turns), which is where the paper puts the bending sector,
+and the angle between them is the joint's theta. So choosing joints is choosing break points: the
+path of least cost from the profile's start to its end, found by dynamic programming.
+
+Glossary
+--------
+BS, NS : bending sector, nondeformable sector
+turn : of the profile between two break points, positive where it is convex
+vertex : where two lines meet
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from profiletool.joints.kinematics import facing_stretch
+from profiletool.records import FloatArray, Profile
+
+IntArray = NDArray[np.intp]
+BoolArray = NDArray[np.bool_]
+
+_GRID_MM = 1.0  # break points are tried this far apart
+_GRID_TURN_RAD = np.radians(6.0)  # or closer, where the profile turns
+_STRAIGHT_RAD = np.radians(0.5)  # less turn than this is no joint
+_BLOCKED_MM = 1000.0  # cost of a pair of lines that do not meet between their break points
+_PER_RAD_MM = 100.0  # cost of turn beyond what a joint reaches
+_PER_MM = 10.0  # cost of length that is missing for a cut
+_MOST_JOINTS = 24
+_EACH = 1.05  # beyond reach of the tolerance, one more joint must better the worst by this much
+
+
+@dataclass(frozen=True)
+class Rules:
+    """What a joint can do.
+
+    Attributes
+    ----------
+    radius_mm : float
+        Of the tube.
+    openF_mm : (K,) array
+        The cuts to choose from, ascending.
+    theta_most_rad : (K,) array
+        The most that each of them bends at the highest pressure.
+    wrap_mm : float
+        Least wrapped length between two windows.
+    tolerance_mm : float
+        How far the polygon may lie off the profile.
+    """
+
+    radius_mm: float
+    openF_mm: FloatArray
+    theta_most_rad: FloatArray
+    wrap_mm: float
+    tolerance_mm: float
+
+
+@dataclass(frozen=True)
+class Sector:
+    """A bending sector and the stretch of profile that it stands for.
+
+    Attributes
+    ----------
+    start, centre, end : float, mm
+        Arc lengths on the profile: break point, middle of the bending sector, next break point.
+    vertex : (x, y), mm
+        Where the two lines meet.
+    turn_rad : float
+        Positive toward the object.
+    openF_mm : float
+    deviation_mm : float
+        Largest distance of the polygon from the profile.
+    excess_turn_rad, missing_mm : float
+        What is beyond the reach of one joint: turn, and room for its cut. Zero where it fits.
+    """
+
+    start: float
+    centre: float
+    end: float
+    vertex: tuple[float, float]
+    turn_rad: float
+    openF_mm: float
+    deviation_mm: float
+    excess_turn_rad: float
+    missing_mm: float
+
+
+@dataclass(frozen=True)
+class _Pieces:
+    """All candidates from one break point i to the later ones (J of them)."""
+
+    turn: FloatArray
+    centre: FloatArray
+    openF: FloatArray
+    vertex: FloatArray
+    deviation: FloatArray
+    excess_turn: FloatArray
+    missing_mm: FloatArray
+    blocked: BoolArray
+
+    @property
+    def cost(self) -> FloatArray:
+        return (
+            self.deviation
+            + _PER_RAD_MM * self.excess_turn
+            + _PER_MM * self.missing_mm
+            + _BLOCKED_MM * self.blocked
+        )
+
+
+def discretise(profile: Profile, rules: Rules, count: int | None = None) -> tuple[Sector, ...]:
+    """Choose the fewest joints whose polygon stays within the tolerance.
+
+    Of equally many the polygon with the least sum of squared deviations is taken. Where no
+    number of joints reaches the tolerance, the polygon with the least worst deviation is; its
+    sectors say what is missing.
+
+    Parameters
+    ----------
+    profile : Profile
+    rules : Rules
+    count : int, optional
+        Number of joints; as few as reach the tolerance by default.
+
+    Returns
+    -------
+    tuple of Sector, in order along the profile; empty where the profile is straight
+    """
+    grid = _grid(profile)
+    pieces = [_pieces(profile, grid, i, rules) for i in range(len(grid) - 1)]
+    cost = np.full((len(grid), len(grid)), np.inf)
+    for i, piece in enumerate(pieces):
+        cost[i, i + 1 :] = piece.cost
+    if count is None and _straight_deviation(profile) <= rules.tolerance_mm:
+        return ()
+    path = _best_path(cost, rules.tolerance_mm, count)
+    return tuple(_sector(profile, grid, pieces[i], i, j) for i, j in pairwise(path))
+
+
+def _grid(profile: Profile) -> IntArray:
+    """Pick the indices of the points that may be break points, both ends among them."""
+    turned = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(profile.heading)))])
+    measure = profile.s / _GRID_MM + turned / _GRID_TURN_RAD
+    count = int(np.ceil(measure[-1]))
+    at = np.searchsorted(measure, np.linspace(0.0, measure[-1], count + 1))
+    return np.unique(np.clip(at, 0, len(measure) - 1))
+
+
+def _straight_deviation(profile: Profile) -> float:
+    away = profile.points - profile.points[0]
+    return float(np.abs(_cross(_direction(profile.heading[0]), away)).max())
+
+
+def _direction(heading: float | FloatArray) -> FloatArray:
+    return np.stack([np.cos(heading), np.sin(heading)], axis=-1)
+
+
+def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
+
+
+def _pieces(profile: Profile, grid: IntArray, i: int, rules: Rules) -> _Pieces:
+    """Judge the joints between break point i and every later one."""
+    here, later = grid[i], grid[i + 1 :]
+    turn = profile.sign * (profile.heading[later] - profile.heading[here])
+    stretch = profile.s[later] - profile.s[here]
+    centre, spread = _centred(profile, here, later, turn)
+    openF, excess = _cuts(0.5 * np.minimum(spread, stretch), np.abs(turn), rules)
+    opened = openF + facing_stretch(turn, rules.radius_mm)
+    room = np.minimum(centre - profile.s[here], profile.s[later] - centre)
+    missing = np.maximum(0.5 * (opened + rules.wrap_mm) - room, 0.0)
+    vertex, ahead, behind = _vertices(profile, here, later)
+    # Lines that meet behind a break point leave no sector to bend between them.
+    blocked = (np.abs(turn) < _STRAIGHT_RAD) | ~(ahead >= 0.0) | ~(behind >= 0.0)
+    radius = np.where(turn < 0.0, opened / np.maximum(-turn, _STRAIGHT_RAD), 0.0)
+    deviation = _deviation(profile, grid[i:], np.where(blocked[:, None], 0.0, vertex), radius)
+    return _Pieces(turn, centre, openF, vertex, deviation, excess, missing, blocked)
+
+
+def _centred(
+    profile: Profile, here: int, later: IntArray, turn: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Arc length at which the curvature is centred, and the length of an even arc as spread out.
+
+    An arc of length L has its curvature spread with a variance of L² / 12 about its middle.
+    """
+    curvature = np.gradient(profile.heading, profile.s) * profile.sign
+    first, second = (
+        np.concatenate([[0.0], np.cumsum(0.5 * (m[1:] + m[:-1]) * np.diff(profile.s))])
+        for m in (curvature * profile.s, curvature * profile.s**2)
+    )
+    with np.errstate(divide="ignore", invalid="ignore"):
+        centre = (first[later] - first[here]) / turn
+        variance = (second[later] - second[here]) / turn - centre**2
+    # Where turns of both signs cancel, the moments say nothing: take the middle, all of it.
+    fair = (centre > profile.s[here]) & (centre < profile.s[later]) & (variance > 0.0)
+    middle = 0.5 * (profile.s[here] + profile.s[later])
+    spread = np.sqrt(12.0 * np.where(fair, variance, np.inf))
+    return np.where(fair, centre, middle), spread
+
+
+def _cuts(measured: FloatArray, bend: FloatArray, rules: Rules) -> tuple[FloatArray, FloatArray]:
+    """Cut for each joint, and the turn that even the longest cut leaves over.
+
+    Rounded up to the next one there is, and no shorter than the turn needs (step 5).
+    """
+    last = len(rules.openF_mm) - 1
+    by_length = np.searchsorted(rules.openF_mm, measured - 1e-9)
+    reaching = bend[:, None] <= rules.theta_most_rad + 1e-12
+    by_turn = np.where(reaching.any(axis=1), np.argmax(reaching, axis=1), last)
+    chosen = np.minimum(np.maximum(by_length, by_turn), last)
+    return rules.openF_mm[chosen], np.maximum(bend - rules.theta_most_rad[chosen], 0.0)
+
+
+def _vertices(
+    profile: Profile, here: int, later: IntArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Where the line at ``here`` meets the later ones: (J, 2); distances along both lines to it."""
+    along = _direction(profile.heading[here])
+    other = _direction(profile.heading[later])
+    across = profile.points[later] - profile.points[here]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ahead = _cross(across, other) / _cross(along, other)
+        behind = _cross(across, along) / _cross(other, along)
+    with np.errstate(invalid="ignore"):
+        vertex = profile.points[here] + ahead[:, None] * along
+    return vertex, ahead, behind
+
+
+def _deviation(
+    profile: Profile, indices: IntArray, vertex: FloatArray, radius: FloatArray
+) -> FloatArray:
+    """Largest distance between profile and polygon for the pieces from indices[0] on: (J,).
+
+    Toward the object the polygon has a vertex. Away from it the hinge is on the far side and the
+    object-facing line runs through the joint as an arc, of the given radius.
+    """
+    points = profile.points[indices]
+    first = _direction(profile.heading[indices[0]])
+    last = _direction(profile.heading[indices[1:]])
+    away = points - vertex[:, None, :]
+    on_first = away @ first
+    on_last = np.einsum("jmc,jc->jm", away, last)
+    before = on_first + on_last < 0.0
+    to_line = np.where(before, _cross(first, away), _cross(last[:, None, :], away))
+    half = 0.5 * (profile.heading[indices[1:]] - profile.heading[indices[0]])
+    tangent = radius * np.abs(np.tan(half))
+    bisector = _direction(profile.heading[indices[0]] + half + np.pi / 2.0)
+    centre = vertex + (np.sign(half) * radius / np.cos(half))[:, None] * bisector
+    to_arc = np.hypot(*np.moveaxis(points - centre[:, None, :], -1, 0)) - radius[:, None]
+    on_arc = (on_first > -tangent[:, None]) & (on_last < tangent[:, None])
+    off: FloatArray = np.abs(np.where(on_arc, to_arc, to_line))
+    inside = np.tri(len(last), len(points), 1, dtype=bool)
+    worst = np.max(off, axis=1, where=inside, initial=0.0)
+    gap = np.min(np.hypot(away[..., 0], away[..., 1]), axis=1, where=inside, initial=np.inf)
+    return np.asarray(np.maximum(worst, np.where(radius > 0.0, 0.0, gap)))
+
+
+def _best_path(cost: FloatArray, tolerance: float, count: int | None) -> list[int]:
+    """Break points (grid positions, both ends included) of the best polygon.
+
+    First the least worst cost for every number of joints, then, among paths no worse than that
+    or the tolerance, the least sum of squares.
+    """
+    last = len(cost) - 1
+    most = min(count or _MOST_JOINTS, last)
+    reach = np.full(len(cost), np.inf)
+    reach[0] = 0.0
+    worst = np.empty(most)
+    for n in range(most):
+        reach = np.min(np.maximum(reach[:, None], cost), axis=0)
+        worst[n] = reach[last]
+    good = np.flatnonzero(worst <= tolerance)
+    joints = count or int(good[0] if good.size else np.argmin(worst * _EACH ** np.arange(most))) + 1
+    joints = min(joints, most)
+    limit = max(tolerance, float(worst[joints - 1]) * (1.0 + 1e-9))
+    squares = np.where(cost <= limit, cost**2, np.inf)
+    total = np.full(len(cost), np.inf)
+    total[0] = 0.0
+    origins = []
+    for _ in range(joints):
+        sums = total[:, None] + squares
+        origins.append(np.argmin(sums, axis=0))
+        total = np.min(sums, axis=0)
+    path = [last]
+    for origin in reversed(origins):
+        path.append(int(origin[path[-1]]))
+    return path[::-1]
+
+
+def _sector(profile: Profile, grid: IntArray, piece: _Pieces, i: int, j: int) -> Sector:
+    k = j - i - 1
+    return Sector(
+        start=float(profile.s[grid[i]]),
+        centre=float(piece.centre[k]),
+        end=float(profile.s[grid[j]]),
+        vertex=(float(piece.vertex[k, 0]), float(piece.vertex[k, 1])),
+        turn_rad=float(piece.turn[k]),
+        openF_mm=float(piece.openF[k]),
+        deviation_mm=float(piece.deviation[k]),
+        excess_turn_rad=float(piece.excess_turn[k]),
+        missing_mm=float(piece.missing_mm[k]),
+    )

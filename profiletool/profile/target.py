@@ -1,0 +1,118 @@
+"""From an object's outline, or an open drawn profile, to the target profile of the tube."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import shapely
+
+from profiletool.errors import NoObject
+from profiletool.profile.curve import arc_length, make_curve, smoothing_width
+from profiletool.profile.offset import reachable_line, reachable_outline
+from profiletool.profile.side import Stretch, side_of
+from profiletool.records import FloatArray, Profile, Side
+
+STEP_MM = 0.1  # spacing of a profile's points
+_LEAST_WIDTH_MM = 1.0  # half a mesh of the gauze: shorter features are nothing to a tube
+_BRIDGED_MM = 0.1  # a gap that counts as bridged, where noise does not ask for more
+
+
+@dataclass(frozen=True)
+class Reach:
+    """Which stretch of an object the tube shall follow, and how.
+
+    ``start_pct`` and ``end_pct`` count along the side's arc length; ``noise_mm`` and
+    ``spacing_mm`` describe the outline (see `smoothing_width`).
+    """
+
+    side: Side
+    radius_mm: float
+    clearance_mm: float = 0.0
+    start_pct: float = 0.0
+    end_pct: float = 100.0
+    noise_mm: float = 0.0
+    spacing_mm: float = 0.0
+
+
+def profile_of_object(outline: FloatArray, reach: Reach) -> Profile:
+    """Target profile along one side of an object.
+
+    Parameters
+    ----------
+    outline : (M, 2) array, mm, y up
+    reach : Reach
+
+    Raises
+    ------
+    NoObject
+        When that side has no usable length.
+    """
+    closed = reachable_outline(outline, reach.radius_mm, reach.clearance_mm)
+    profile = _profile(side_of(closed, reach.side, 2.0 * _window(reach)), reach, outline)
+    gap = shapely.distance(shapely.points(profile.points), shapely.LinearRing(outline))
+    # A smoothed corner stands off its outline too; only where the tube passes outside is a bridge.
+    outside = ~shapely.contains_xy(shapely.Polygon(outline).buffer(0.0), profile.points)
+    bridged = outside & (gap > reach.clearance_mm + max(_BRIDGED_MM, 2.0 * reach.noise_mm))
+    return replace(profile, bridged=bridged)
+
+
+def profile_of_line(points: FloatArray, reach: Reach) -> Profile:
+    """Target profile along an open drawn curve (N, 2).
+
+    It is travelled from its upper end to its lower one; where both ends are level (to 1 % of the
+    curve's length), as it was drawn.
+    """
+    drop = points[0, 1] - points[-1, 1]
+    if drop < -0.01 * arc_length(points)[-1]:
+        points = points[::-1]
+    toward = 1.0 if reach.side == "left" else -1.0
+    line = reachable_line(points, reach.radius_mm, reach.clearance_mm, toward)
+    return _profile(Stretch(line, 0.0, float(arc_length(line)[-1])), reach, None)
+
+
+def _window(reach: Reach) -> float:
+    """Half-width over which headings are taken, mm."""
+    width = max(smoothing_width(reach.noise_mm, reach.spacing_mm), _LEAST_WIDTH_MM)
+    return min(width, reach.radius_mm)
+
+
+def _profile(stretch: Stretch, reach: Reach, outline: FloatArray | None) -> Profile:
+    length = stretch.end - stretch.start
+    if length < 4.0 * reach.radius_mm:
+        raise NoObject(
+            f"the profile is {length:.1f} mm long, shorter than two diameters of the tube; "
+            "check the scale, or take a thinner tube"
+        )
+    whole = make_curve(stretch.points, STEP_MM, _window(reach))
+    curvature = whole.curvature * (1.0 if reach.side == "left" else -1.0)
+    first, last = np.searchsorted(whole.s, [stretch.start, stretch.end - 0.5 * STEP_MM])
+    if outline is not None:
+        last = first + _before_base_corner(curvature[first:last], reach.radius_mm)
+    shares = np.array([reach.start_pct, reach.end_pct]) / 100.0
+    low, high = first + np.rint(shares * (last - first)).astype(int)
+    kept = slice(int(low), int(high) + 1)
+    return Profile(
+        points=whole.points[kept],
+        s=whole.s[kept] - whole.s[low],
+        heading=whole.heading[kept],
+        curvature=curvature[kept],
+        bridged=np.zeros(high + 1 - low, dtype=bool),
+        side=reach.side,
+        outline=outline,
+    )
+
+
+def _before_base_corner(curvature: FloatArray, radius_mm: float) -> int:
+    """Index of the last point before the corner to the base, if there is one.
+
+    A turn tighter than the tube right at the end of a side (the foot of a bottle, the rim of a
+    lamp cap) leads under the object; the tube ends before it.
+    """
+    tight = curvature > 1.0 / radius_mm
+    near_end = tight[-round(radius_mm / STEP_MM) :]
+    if not near_end.any():
+        return len(curvature)
+    end = len(curvature) - int(np.argmax(near_end[::-1]))
+    start = end - int(np.argmin(np.append(tight[:end][::-1], False)))
+    return max(start - 1, 0)
