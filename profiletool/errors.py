@@ -2,7 +2,13 @@
 
 
 class ProfiletoolError(Exception):
-    """A failure that the user can act on: its message is one line, what is wrong and what to try."""
+    """A failure that the user can act on: one line says what is wrong and what to try."""
+
+    exit_code = 1
+
+
+class OutputError(ProfiletoolError):
+    """The results cannot be written where they were asked for."""
 
     exit_code = 1
 

@@ -162,7 +162,7 @@ class Joint:
 
 @dataclass(frozen=True)
 class Source:
-    """Where a design comes from."""
+    """Where a design comes from; ``origin_px`` is the object frame's origin in the picture."""
 
     file: str
     sha256: str
@@ -171,6 +171,7 @@ class Source:
     side: Side
     profile_length_mm: float
     bridged_share: float
+    origin_px: tuple[float, float] | None
 
 
 @dataclass(frozen=True)

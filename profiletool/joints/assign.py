@@ -18,6 +18,7 @@ from profiletool.records import FloatArray, Joint, Material, Pose, Profile
 TOWARD_DEG, AWAY_DEG = 270.0, 90.0  # alpha_center of a joint that bends toward the object, or away
 WRAP_MM = 2.0  # least wrapped length between two windows: one mesh
 END_WRAP_MM = 4.0  # least wrapped length at the closed end: the paper's mould leaves 4 mm there
+NEAR_DEG = 3.0  # an angle of the table this much above the wanted one is near enough
 _F_DECIMALS = 1
 
 
@@ -107,20 +108,22 @@ def lay_out(
 
 
 def _nearest_cuts(table: Table, openF: Sequence[float], wanted: Sequence[float]) -> list[float]:
-    """Shorten cuts where the table then comes closer to the wanted angle.
+    """Shorten cuts where the table has nothing near the wanted angle.
 
     The length of a bending sector is free (step 4), and the columns of a long cut lie up to 14
-    deg apart. The joint with the largest angle keeps its cut: it sets the pressure.
+    deg apart. The longest cut that comes near enough is taken, else the one that comes nearest.
+    The joint with the largest angle keeps its cut: it sets the pressure.
     """
     row = table.pressures_bar.index(assign(table, openF, wanted).pressure_bar)
-    excess = table.theta_deg[row] - np.reshape(wanted, (-1, 1, 1))  # joint, openF, alpha
-    least = np.min(np.where(excess >= 0.0, excess, np.inf), axis=2)
-    longer = np.array(table.openF_mm) > np.reshape(openF, (-1, 1)) + 1e-9
-    # Of equally near cuts the longest, which strains the rubber least.
-    best = len(table.openF_mm) - 1 - np.argmin(np.where(longer, np.inf, least)[:, ::-1], axis=1)
-    cuts = [table.openF_mm[k] for k in best]
-    lead = max(range(len(cuts)), key=lambda k: (wanted[k], -openF[k]))
-    cuts[lead] = openF[lead]
+    lead = max(range(len(openF)), key=lambda k: (wanted[k], -openF[k]))
+    cuts = list(openF)
+    for k, theta in enumerate(wanted):
+        excess = table.theta_deg[row] - theta
+        least = np.min(np.where(excess >= 0.0, excess, np.inf), axis=1)
+        least[np.array(table.openF_mm) > openF[k] + 1e-9] = np.inf
+        near = np.flatnonzero(least <= NEAR_DEG)
+        if k != lead:
+            cuts[k] = table.openF_mm[near[-1] if near.size else np.argmin(least)]
     return cuts
 
 
@@ -134,6 +137,8 @@ def _phalanges(profile: Profile, sectors: Sequence[Sector], radius_mm: float) ->
     ends = [0.5 * _covered(sector, radius_mm) for sector in sectors]
 
     def wrapped(start: float, end: float, least: float) -> float:
+        if end <= start:
+            return least
         x, y = (np.interp([start, end], profile.s, axis[:, k]) for k in (0, 1))
         return max(float(np.hypot(x[1] - x[0], y[1] - y[0])), least)
 

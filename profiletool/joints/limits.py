@@ -7,12 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from formula.theta import Formula
-from profiletool.joints.assign import Layout
+from profiletool.joints.assign import NEAR_DEG, Layout
 from profiletool.joints.sectors import Rules, Sector
 from profiletool.records import Material, Misfit, Profile
 
 _FORMULA_LOW_ABOVE_BAR = 1.2
-_EXCESS_DEG = 3.0
 _LENGTH_SLACK_MM = 0.05
 
 
@@ -55,12 +54,13 @@ def _sector_shortfalls(number: int, sector: Sector, rules: Rules, free_count: bo
         most = np.degrees(rules.theta_most_rad[np.searchsorted(rules.openF_mm, sector.openF_mm)])
         reasons.append(
             f"{place}: a turn of {abs(np.degrees(sector.turn_rad)):.0f} deg is more than one "
-            f"joint reaches ({most:.0f} deg with openF {sector.openF_mm:g} mm)"
+            f"joint reaches ({most:.0f} deg with openF {sector.openF_mm:g} mm); leave such a "
+            "corner out with --from or --to"
         )
     if sector.missing_mm > 0.0:
         reasons.append(
             f"{place}: its cut of {sector.openF_mm:g} mm lacks {2.0 * sector.missing_mm:.1f} mm "
-            "of room; the profile turns too fast here for this tube"
+            "of room; the profile turns too fast here for this tube, leave it out with --from or --to"
         )
     if sector.deviation_mm > rules.tolerance_mm and free_count:
         reasons.append(
@@ -80,7 +80,7 @@ def warnings(layout: Layout, profile: Profile, fit: Misfit, tolerance_mm: float)
         )
     for joint in layout.joints:
         excess = joint.theta_formula_deg - joint.theta_target_deg
-        if excess > _EXCESS_DEG:
+        if excess > NEAR_DEG:
             found.append(
                 f"joint {joint.number} bends {excess:.1f} deg more than wanted: the table has "
                 f"nothing closer at {layout.pressure_bar:.2f} bar"

@@ -27,14 +27,15 @@ from profiletool.records import FloatArray, Profile
 IntArray = NDArray[np.intp]
 BoolArray = NDArray[np.bool_]
 
-_GRID_MM = 1.0  # break points are tried this far apart
+_GRID_SHARE = 0.1  # of the tube's radius: break points are tried this far apart
 _GRID_TURN_RAD = np.radians(6.0)  # or closer, where the profile turns
 _STRAIGHT_RAD = np.radians(0.5)  # less turn than this is no joint
 _BLOCKED_MM = 1000.0  # cost of a pair of lines that do not meet between their break points
 _PER_RAD_MM = 100.0  # cost of turn beyond what a joint reaches
 _PER_MM = 10.0  # cost of length that is missing for a cut
 _MOST_JOINTS = 24
-_EACH = 1.05  # beyond reach of the tolerance, one more joint must better the worst by this much
+_WORTH_MM = 0.5
+_FAINT = 1e-6  # weight of what lies within the tolerance against what lies beyond
 
 
 @dataclass(frozen=True)
@@ -119,8 +120,8 @@ def discretise(profile: Profile, rules: Rules, count: int | None = None) -> tupl
     """Choose the fewest joints whose polygon stays within the tolerance.
 
     Of equally many the polygon with the least sum of squared deviations is taken. Where no
-    number of joints reaches the tolerance, the polygon with the least worst deviation is; its
-    sectors say what is missing.
+    number of joints reaches the tolerance, the polygon is taken that is beyond it by the least
+    in sum, so that one bad place leaves the others good; its sectors say what is missing.
 
     Parameters
     ----------
@@ -133,7 +134,7 @@ def discretise(profile: Profile, rules: Rules, count: int | None = None) -> tupl
     -------
     tuple of Sector, in order along the profile; empty where the profile is straight
     """
-    grid = _grid(profile)
+    grid = _grid(profile, _GRID_SHARE * rules.radius_mm)
     pieces = [_pieces(profile, grid, i, rules) for i in range(len(grid) - 1)]
     cost = np.full((len(grid), len(grid)), np.inf)
     for i, piece in enumerate(pieces):
@@ -144,10 +145,10 @@ def discretise(profile: Profile, rules: Rules, count: int | None = None) -> tupl
     return tuple(_sector(profile, grid, pieces[i], i, j) for i, j in pairwise(path))
 
 
-def _grid(profile: Profile) -> IntArray:
+def _grid(profile: Profile, spacing: float) -> IntArray:
     """Pick the indices of the points that may be break points, both ends among them."""
     turned = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(profile.heading)))])
-    measure = profile.s / _GRID_MM + turned / _GRID_TURN_RAD
+    measure = profile.s / spacing + turned / _GRID_TURN_RAD
     count = int(np.ceil(measure[-1]))
     at = np.searchsorted(measure, np.linspace(0.0, measure[-1], count + 1))
     return np.unique(np.clip(at, 0, len(measure) - 1))
@@ -191,19 +192,17 @@ def _centred(
 
     An arc of length L has its curvature spread with a variance of L² / 12 about its middle.
     """
-    curvature = np.gradient(profile.heading, profile.s) * profile.sign
-    first, second = (
-        np.concatenate([[0.0], np.cumsum(0.5 * (m[1:] + m[:-1]) * np.diff(profile.s))])
-        for m in (curvature * profile.s, curvature * profile.s**2)
-    )
+    middles = 0.5 * (profile.s[1:] + profile.s[:-1])
+    turns = profile.sign * np.diff(profile.heading)
+    first, second = (np.concatenate([[0.0], np.cumsum(middles**power * turns)]) for power in (1, 2))
     with np.errstate(divide="ignore", invalid="ignore"):
         centre = (first[later] - first[here]) / turn
         variance = (second[later] - second[here]) / turn - centre**2
     # Where turns of both signs cancel, the moments say nothing: take the middle, all of it.
-    fair = (centre > profile.s[here]) & (centre < profile.s[later]) & (variance > 0.0)
+    inside = (centre > profile.s[here]) & (centre < profile.s[later])
     middle = 0.5 * (profile.s[here] + profile.s[later])
-    spread = np.sqrt(12.0 * np.where(fair, variance, np.inf))
-    return np.where(fair, centre, middle), spread
+    spread = np.sqrt(12.0 * np.maximum(np.where(inside, variance, np.inf), 0.0))
+    return np.where(inside, centre, middle), spread
 
 
 def _cuts(measured: FloatArray, bend: FloatArray, rules: Rules) -> tuple[FloatArray, FloatArray]:
@@ -266,31 +265,28 @@ def _deviation(
 def _best_path(cost: FloatArray, tolerance: float, count: int | None) -> list[int]:
     """Break points (grid positions, both ends included) of the best polygon.
 
-    First the least worst cost for every number of joints, then, among paths no worse than that
-    or the tolerance, the least sum of squares.
+    For every number of joints: the least sum of what is beyond the tolerance, of equals the least
+    sum of squared deviations. The fewest joints with nothing beyond win; where there are none,
+    one more joint must take away at least `_WORTH_MM`.
     """
     last = len(cost) - 1
     most = min(count or _MOST_JOINTS, last)
-    reach = np.full(len(cost), np.inf)
-    reach[0] = 0.0
-    worst = np.empty(most)
-    for n in range(most):
-        reach = np.min(np.maximum(reach[:, None], cost), axis=0)
-        worst[n] = reach[last]
-    good = np.flatnonzero(worst <= tolerance)
-    joints = count or int(good[0] if good.size else np.argmin(worst * _EACH ** np.arange(most))) + 1
-    joints = min(joints, most)
-    limit = max(tolerance, float(worst[joints - 1]) * (1.0 + 1e-9))
-    squares = np.where(cost <= limit, cost**2, np.inf)
+    beyond = np.maximum(cost - tolerance, 0.0)
+    step = beyond + _FAINT * np.minimum(cost, tolerance) ** 2 / tolerance**2
     total = np.full(len(cost), np.inf)
     total[0] = 0.0
-    origins = []
-    for _ in range(joints):
-        sums = total[:, None] + squares
-        origins.append(np.argmin(sums, axis=0))
-        total = np.min(sums, axis=0)
+    origins, sums = [], np.empty(most)
+    for n in range(most):
+        through = total[:, None] + step
+        origins.append(np.argmin(through, axis=0))
+        total = np.min(through, axis=0)
+        sums[n] = total[last]
+    numbers = np.arange(1, most + 1)
+    within = np.flatnonzero(sums <= 2.0 * _FAINT * numbers)
+    best = within[0] if within.size else np.argmin(sums + _WORTH_MM * numbers)
+    joints = min(count or int(best) + 1, most)
     path = [last]
-    for origin in reversed(origins):
+    for origin in reversed(origins[:joints]):
         path.append(int(origin[path[-1]]))
     return path[::-1]
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from profiletool.records import FloatArray
 
-_DEGREE = 3  # of the local polynomials: a circle's curvature comes out right to (h/R)² / 20
+_DEGREE = 3  # of the polynomials for the positions: circles shrink by (h/R)⁴ only
 _HEADING_NOISE_RAD = np.radians(0.5)  # what smoothing leaves of the pixels' noise
 
 
@@ -46,6 +46,20 @@ def resample(points: FloatArray, step: float) -> FloatArray:
     return np.column_stack([np.interp(at, s, points[:, 0]), np.interp(at, s, points[:, 1])])
 
 
+def ring_stretch(ring: FloatArray, start: float, end: float) -> FloatArray:
+    """Cut a closed polygon (M, 2) from one arc length forward to another: (N, 2).
+
+    Both may lie up to one round beyond its first point, either way.
+    """
+    closed = np.concatenate([ring, ring[:1]])
+    once = arc_length(closed)
+    at = (once[:-1] + once[-1] * np.array([[-1.0], [0.0], [1.0]])).ravel()
+    points = np.tile(ring, (3, 1))
+    ends = [np.interp([start, end], at, points[:, k]) for k in (0, 1)]
+    inside = (at > start) & (at < end)
+    return np.concatenate([[[ends[0][0], ends[1][0]]], points[inside], [[ends[0][1], ends[1][1]]]])
+
+
 def smoothing_width(noise_mm: float, spacing_mm: float) -> float:
     """Half-width of the window in which noise leaves the heading right to half a degree.
 
@@ -56,7 +70,10 @@ def smoothing_width(noise_mm: float, spacing_mm: float) -> float:
 
 
 def make_curve(points: FloatArray, step: float, half_width: float) -> Curve:
-    """Resample a polyline and fit cubics over +-``half_width`` around every point.
+    """Resample a polyline and fit it over +-``half_width`` around every point.
+
+    Cubics give the positions, which then do not shrink where the curve bends; straight lines give
+    the headings, which then do not overshoot beside a corner.
 
     Parameters
     ----------
@@ -64,44 +81,37 @@ def make_curve(points: FloatArray, step: float, half_width: float) -> Curve:
     step : float, mm
         Spacing of the result.
     half_width : float, mm
-        Near the ends the last whole window serves.
+        Nearer to the ends than this the cubic of the last whole window serves.
     """
     even = resample(points, step)
-    s = arc_length(even)
-    spacing = s[-1] / (len(s) - 1)
+    spacing = arc_length(even)[-1] / (len(even) - 1)
     reach = min(max(round(half_width / spacing), 2), (len(even) - 1) // 2)
-    fitted, first, second = _local_polynomials(even, spacing, reach)
-    heading = np.unwrap(np.arctan2(first[:, 1], first[:, 0]))
-    speed = np.hypot(first[:, 0], first[:, 1])
-    cross = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
-    return Curve(fitted, arc_length(fitted), heading, cross / speed**3)
+    fitted, direction = _local_fits(even, spacing, reach)
+    s = arc_length(fitted)
+    heading = np.unwrap(np.arctan2(direction[:, 1], direction[:, 0]))
+    return Curve(fitted, s, heading, np.gradient(heading, s))
 
 
-def _local_polynomials(
-    points: FloatArray, spacing: float, reach: int
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Value, first and second derivative of cubics fitted to 2 reach + 1 points each.
+def _local_fits(points: FloatArray, spacing: float, reach: int) -> tuple[FloatArray, FloatArray]:
+    """Positions and directions, (N, 2) each, by least squares over 2 reach + 1 points.
 
-    What scipy.signal.savgol_filter does with mode="interp", whose import alone takes a second.
+    What scipy.signal.savgol_filter does with mode="interp"; its import alone takes a second.
     """
     degree = min(_DEGREE, 2 * reach)
-    offsets: FloatArray = np.arange(-reach, reach + 1) * spacing
+    offsets = np.asarray(np.arange(-reach, reach + 1) * spacing, dtype=np.float64)
     solve = np.linalg.pinv(np.vander(offsets, degree + 1, increasing=True))
     windows = np.lib.stride_tricks.sliding_window_view(points, 2 * reach + 1, axis=0)
-    inner = np.einsum("kw,ncw->nkc", solve, windows)
+    slope = offsets / np.sum(offsets**2)
 
-    def at_end(coefficients: FloatArray, t: FloatArray) -> FloatArray:
+    def at_end(window: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+        coefficients = solve @ window.T
         powers = np.vander(t, degree + 1, increasing=True)
-        k = np.arange(degree + 1)
-        slopes = np.zeros_like(powers)
-        slopes[:, 1:] = powers[:, :-1] * k[1:]
-        bends = np.zeros_like(powers)
-        bends[:, 2:] = powers[:, :-2] * (k[2:] * k[1:-1])
-        return np.stack([p @ coefficients for p in (powers, slopes, bends)], axis=1)
+        slopes = powers[:, :-1] * np.arange(1, degree + 1)
+        return powers @ coefficients, slopes @ coefficients[1:]
 
-    middle = np.stack([inner[:, 0], inner[:, 1], 2.0 * inner[:, 2]], axis=1)
-    ahead, behind = offsets[:reach], offsets[reach + 1 :]
-    value, first, second = np.concatenate(
-        [at_end(inner[0], ahead), middle, at_end(inner[-1], behind)]
-    ).transpose(1, 0, 2)
-    return value, first, second
+    first = at_end(windows[0], offsets[:reach])
+    last = at_end(windows[-1], offsets[reach + 1 :])
+    return (
+        np.concatenate([first[0], windows @ solve[0], last[0]]),
+        np.concatenate([first[1], windows @ slope, last[1]]),
+    )

@@ -10,9 +10,12 @@ import numpy as np
 import shapely
 
 from profiletool.errors import NoObject
+from profiletool.profile.curve import ring_stretch
 from profiletool.records import FloatArray, Profile
 
 _QUADRANT_SEGMENTS = 64  # a 10 mm arc drawn to 0.001 mm
+_HAIR_MM = 1e-3
+_SAME_MM = 0.01
 
 
 def reachable_outline(outline: FloatArray, radius_mm: float, clearance_mm: float) -> FloatArray:
@@ -40,11 +43,11 @@ def reachable_outline(outline: FloatArray, radius_mm: float, clearance_mm: float
     grown = body.buffer(clearance_mm + radius_mm, quad_segs=_QUADRANT_SEGMENTS)
     closed = grown.buffer(-radius_mm, quad_segs=_QUADRANT_SEGMENTS)
     parts = [part for part in shapely.get_parts(closed) if isinstance(part, shapely.Polygon)]
-    if not parts or max(part.area for part in parts) == 0.0:
+    if not parts or max(_area(part) for part in parts) == 0.0:
         raise NoObject(
             "the outline encloses no area; draw a closed contour that does not cross itself"
         )
-    largest = max(parts, key=lambda part: part.area)
+    largest = max(parts, key=_area)
     points: FloatArray = shapely.get_coordinates(largest.exterior)[:-1]
     return points
 
@@ -52,16 +55,39 @@ def reachable_outline(outline: FloatArray, radius_mm: float, clearance_mm: float
 def reachable_line(
     points: FloatArray, radius_mm: float, clearance_mm: float, toward: float
 ) -> FloatArray:
-    """Do the same for an open profile (N, 2); ``toward`` is +1 for a tube to its right, else -1.
+    """Do the same for an open profile (N, 2); ``toward`` is +1 for a tube to its right, else -1."""
+    line = shapely.LineString(points)
+    grown = line.buffer(clearance_mm + radius_mm, quad_segs=_QUADRANT_SEGMENTS)
+    # A hair less than all the way back, so that a straight line keeps an area.
+    closed = grown.buffer(_HAIR_MM - radius_mm, quad_segs=_QUADRANT_SEGMENTS)
+    ring = shapely.get_coordinates(max(shapely.get_parts(closed), key=_area).exterior)[:-1]
+    length = shapely.LinearRing(ring).length
+    start, end = shapely.line_locate_point(
+        shapely.LinearRing(ring), shapely.points([points[0], points[-1]])
+    )
+    ways = (
+        ring_stretch(ring, start, end if end > start else end + length),
+        ring_stretch(ring, end, start if start > end else start + length)[::-1],
+    )
+    way = max(ways, key=lambda way: toward * _rightness(line, way))
+    bridged = shapely.distance(shapely.points(way), line).max() > clearance_mm + _SAME_MM
+    return way if bridged or clearance_mm > 0.0 else points
 
-    Where the disc cannot follow at all (the offset falls apart), the profile is kept as drawn;
-    the choice of joints then says what cannot be followed.
-    """
-    out = _offset(points, -toward * (radius_mm + clearance_mm))
-    if out is None:
-        return points
-    back = _offset(out, toward * radius_mm)
-    return points if back is None else back
+
+def _rightness(line: shapely.LineString, way: FloatArray) -> float:
+    """How far a way runs to the right of a line, on the mean."""
+    at = shapely.line_locate_point(line, shapely.points(way))
+    step = 1e-3 * line.length
+    behind, ahead = (
+        shapely.get_coordinates(shapely.line_interpolate_point(line, np.clip(v, 0.0, line.length)))
+        for v in (at - step, at + step)
+    )
+    along, off = ahead - behind, way - 0.5 * (ahead + behind)
+    return float(np.mean(along[:, 1] * off[:, 0] - along[:, 0] * off[:, 1]))
+
+
+def _area(part: shapely.Polygon) -> float:
+    return float(part.area)
 
 
 def offset_points(profile: Profile, distance_mm: float) -> FloatArray:
@@ -71,17 +97,18 @@ def offset_points(profile: Profile, distance_mm: float) -> FloatArray:
 
 
 def offset_curve(profile: Profile, distance_mm: float) -> FloatArray:
-    """Curve at a distance outward of the profile, loops removed: (K, 2)."""
-    line = _offset(profile.points, -profile.sign * distance_mm)
-    return offset_points(profile, distance_mm) if line is None else line
+    """Curve at a distance outward of the profile, loops removed: (K, 2).
 
-
-def _offset(points: FloatArray, distance: float) -> FloatArray | None:
-    """Offset a polyline, positive to its left, as shapely does; None where it falls apart."""
+    Where the offset falls apart, the points along the normals are returned, loops and all.
+    """
+    # shapely's distance is positive to the left of the travel direction.
     line = shapely.offset_curve(
-        shapely.LineString(points), distance, quad_segs=_QUADRANT_SEGMENTS, join_style="round"
+        shapely.LineString(profile.points),
+        -profile.sign * distance_mm,
+        quad_segs=_QUADRANT_SEGMENTS,
+        join_style="round",
     )
     if not isinstance(line, shapely.LineString) or line.is_empty:
-        return None
+        return offset_points(profile, distance_mm)
     coordinates: FloatArray = shapely.get_coordinates(line)
     return coordinates

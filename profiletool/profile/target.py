@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from profiletool.errors import NoObject
 from profiletool.profile.curve import arc_length, make_curve, smoothing_width
@@ -15,6 +16,8 @@ from profiletool.records import FloatArray, Profile, Side
 
 STEP_MM = 0.1  # spacing of a profile's points
 _LEAST_WIDTH_MM = 1.0  # half a mesh of the gauze: shorter features are nothing to a tube
+_UNDERCUT = np.sin(np.radians(20.0))  # normals steeper down than this face the base
+_STRAIGHT_DOWN = np.cos(np.radians(45.0))
 _BRIDGED_MM = 0.1  # a gap that counts as bridged, where noise does not ask for more
 
 
@@ -78,17 +81,19 @@ def _window(reach: Reach) -> float:
 
 
 def _profile(stretch: Stretch, reach: Reach, outline: FloatArray | None) -> Profile:
-    length = stretch.end - stretch.start
+    whole = make_curve(stretch.points, STEP_MM, _window(reach))
+    sign = 1.0 if reach.side == "left" else -1.0
+    curvature = sign * whole.curvature
+    first, last = np.searchsorted(whole.s, [stretch.start, stretch.end - 0.5 * STEP_MM])
+    if outline is not None:
+        down = sign * np.cos(whole.heading[first : last + 1])
+        last = first + _above_base(down, curvature[first : last + 1], reach)
+    length = whole.s[last] - whole.s[first]
     if length < 4.0 * reach.radius_mm:
         raise NoObject(
             f"the profile is {length:.1f} mm long, shorter than two diameters of the tube; "
             "check the scale, or take a thinner tube"
         )
-    whole = make_curve(stretch.points, STEP_MM, _window(reach))
-    curvature = whole.curvature * (1.0 if reach.side == "left" else -1.0)
-    first, last = np.searchsorted(whole.s, [stretch.start, stretch.end - 0.5 * STEP_MM])
-    if outline is not None:
-        last = first + _before_base_corner(curvature[first:last], reach.radius_mm)
     shares = np.array([reach.start_pct, reach.end_pct]) / 100.0
     low, high = first + np.rint(shares * (last - first)).astype(int)
     kept = slice(int(low), int(high) + 1)
@@ -103,16 +108,26 @@ def _profile(stretch: Stretch, reach: Reach, outline: FloatArray | None) -> Prof
     )
 
 
-def _before_base_corner(curvature: FloatArray, radius_mm: float) -> int:
-    """Index of the last point before the corner to the base, if there is one.
+def _above_base(down: FloatArray, curvature: FloatArray, reach: Reach) -> int:
+    """Index of the last point of a side above the object's base.
 
-    A turn tighter than the tube right at the end of a side (the foot of a bottle, the rim of a
-    lamp cap) leads under the object; the tube ends before it.
+    The base begins at the corner, tighter than the tube, that leads under the object (the foot of
+    a bottle, the rim of a lamp cap); the side ends before it, and before the headings that the
+    corner bends. An object that is round below (an egg) has no such corner: there the base is
+    what faces straight down to within 45 deg.
+
+    ``down`` is how far the outward normal points down, as a cosine.
     """
-    tight = curvature > 1.0 / radius_mm
-    near_end = tight[-round(radius_mm / STEP_MM) :]
-    if not near_end.any():
-        return len(curvature)
-    end = len(curvature) - int(np.argmax(near_end[::-1]))
-    start = end - int(np.argmin(np.append(tight[:end][::-1], False)))
-    return max(start - 1, 0)
+    undercut = _last_run(down > _UNDERCUT)
+    tight = np.flatnonzero(curvature[undercut:] > 1.0 / reach.radius_mm)
+    if tight.size == 0:
+        return _last_run(down > _STRAIGHT_DOWN)
+    corner = undercut + int(tight[0])
+    gentle = np.flatnonzero(curvature[:corner] <= 1.0 / reach.radius_mm)
+    before = int(gentle[-1]) if gentle.size else 0
+    return max(before - round(_window(reach) / STEP_MM), 0)
+
+
+def _last_run(where: NDArray[np.bool_]) -> int:
+    """Index at which the run of True at the end begins (the last index where there is none)."""
+    return min(len(where) - int(np.argmin(where[::-1])), len(where) - 1) if not where.all() else 0

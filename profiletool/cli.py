@@ -1,0 +1,300 @@
+"""The command line: parse, call, print, exit codes; nothing else."""
+
+from __future__ import annotations
+
+import tomllib
+import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import typer
+
+from profiletool import __version__
+from profiletool.errors import Infeasible, ProfiletoolError, UnreadableInput, UsageError
+
+Debug = Annotated[bool, typer.Option("--debug", help="Show the full traceback of an error.")]
+Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
+FormulaFile = Annotated[
+    Path | None, typer.Option("--formula", help="A formula file (default: the paper's formula).")
+]
+
+app = typer.Typer(
+    name="profiletool",
+    help="From the picture of an object to a soft bending actuator that mirrors its shape.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+design_app = typer.Typer(
+    add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None
+)
+
+
+def main() -> None:
+    """Run `profiletool`."""
+    app()
+
+
+def design_main() -> None:
+    """Run `design`, which is `profiletool design`."""
+    design_app()
+
+
+@contextmanager
+def _exit_codes(debug: bool) -> Iterator[None]:
+    """Turn our errors into one line on stderr and their exit code."""
+    try:
+        yield
+    except ProfiletoolError as error:
+        if debug:
+            traceback.print_exc()
+        typer.echo(f"error: {error}", err=True)
+        raise typer.Exit(error.exit_code) from error
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"profiletool {__version__}")
+        raise typer.Exit
+
+
+def _config(context: typer.Context, path: Path | None) -> Path | None:
+    """Take the options of a TOML file as defaults; the command line wins."""
+    if path is None:
+        return None
+    with _exit_codes(debug=False):
+        context.default_map = {**(context.default_map or {}), **_read_config(context, path)}
+    return path
+
+
+def _read_config(context: typer.Context, path: Path) -> dict[str, Any]:
+    try:
+        tree = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UnreadableInput(f"cannot read {path}: {error.strerror}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise UnreadableInput(f"{path} is not TOML: {error}") from error
+    names = {
+        option.removeprefix("--"): parameter.name
+        for parameter in context.command.params
+        for option in [*parameter.opts, *parameter.secondary_opts]
+        if option.startswith("--") and parameter.name not in (None, "config", "version", "debug")
+    }
+    known = {}
+    for key, value in tree.items():
+        name = names.get(key.replace("_", "-"))
+        if name is None or isinstance(value, dict | list):
+            raise UsageError(f'{path}: "{key}" is no option of design; see design --help')
+        known[name] = value
+    return known
+
+
+@app.callback()
+def _profiletool(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+    ] = False,
+) -> None:
+    pass
+
+
+@design_app.command(epilog="Example:  design bulb.png --height 107.5 --side left --out bulb")
+@app.command(epilog="Example:  profiletool design bulb.png --height 107.5 --out bulb")
+def design(
+    picture: Annotated[
+        Path,
+        typer.Argument(
+            metavar="PICTURE",
+            help="PNG, JPEG, TIFF, BMP or WebP of one object; or a profile as DXF, SVG or CSV.",
+        ),
+    ],
+    height: Annotated[float | None, typer.Option(help="Full height of the object, mm.")] = None,
+    width: Annotated[float | None, typer.Option(help="Full width of the object, mm.")] = None,
+    mm_per_px: Annotated[float | None, typer.Option(help="Millimetres per pixel.")] = None,
+    marker_mm: Annotated[
+        float | None, typer.Option(help="Side of an ArUco DICT_4X4_50 marker in the picture, mm.")
+    ] = None,
+    side: Annotated[
+        Literal["left", "right"], typer.Option(help="Side of the object to follow.")
+    ] = "left",
+    start: Annotated[
+        float, typer.Option("--from", help="Start of the stretch, % of that side from the top.")
+    ] = 0.0,
+    end: Annotated[float, typer.Option("--to", help="End of the stretch, %.")] = 100.0,
+    clearance: Annotated[float, typer.Option(help="Gap between tube and object, mm.")] = 0.0,
+    diameter: Annotated[float, typer.Option(help="Outer diameter of the tube, mm.")] = 20.0,
+    wall: Annotated[float, typer.Option(help="Wall of the tube, mm.")] = 2.0,
+    root: Annotated[
+        float, typer.Option(help="Clamped length before the first joint's centre, mm; at least.")
+    ] = 10.0,
+    pitch: Annotated[float, typer.Option(help="Mesh pitch of the gauze, mm.")] = 2.0,
+    max_pressure: Annotated[float, typer.Option(help="Highest pressure, bar.")] = 2.0,
+    max_length: Annotated[float, typer.Option(help="Longest tube, mm.")] = 250.0,
+    formula: FormulaFile = None,
+    method: Annotated[Literal["paper"], typer.Option(help="How joints are chosen.")] = "paper",
+    joints: Annotated[
+        int | None,
+        typer.Option(min=1, help="Number of joints (default: as few as reach --tolerance)."),
+    ] = None,
+    tolerance: Annotated[
+        float, typer.Option(help="How far the polygon of joints may lie off the profile, mm.")
+    ] = 1.0,
+    verify: Annotated[
+        bool,
+        typer.Option(help="Verify by FE. This version has no FE yet: designs are NOT VERIFIED."),
+    ] = True,
+    refine: Annotated[bool, typer.Option(help="Correct the design by FE. Not yet either.")] = True,
+    config: Annotated[
+        Path | None,
+        typer.Option(callback=_config, is_eager=True, help="TOML file with any of these options."),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Output folder (default: PICTURE's name + _design).")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an earlier design.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print design.json on stdout.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="No progress on stderr.")] = False,
+    debug: Debug = False,
+) -> None:
+    """Design an actuator that mirrors the side of an object, and its cut template."""
+    del method, verify, refine, config  # parsed for the contract; see their help
+    with _exit_codes(debug):
+        from profiletool import output, pipeline
+        from profiletool.image.scale import ScaleRequest
+        from profiletool.records import Material
+        from profiletool.report.text import joint_table
+
+        folder = out or Path(f"{picture.stem}_design")
+        output.check_free(folder, force)
+        request = pipeline.Request(
+            file=picture,
+            scale=ScaleRequest(height, width, mm_per_px, marker_mm),
+            side=side,
+            start_pct=start,
+            end_pct=end,
+            clearance_mm=clearance,
+            tolerance_mm=tolerance,
+            joints=joints,
+            material=Material(
+                outer_diameter_mm=diameter,
+                wall_mm=wall,
+                root_mm=root,
+                pitch_mm=pitch,
+                max_pressure_bar=max_pressure,
+                max_length_mm=max_length,
+            ),
+            formula=formula,
+        )
+        say = _silence if quiet else _say
+        result = pipeline.run(request, say)
+        output.write_folder(folder, result.files, force)
+        text = result.files["design.json"].decode() if as_json else joint_table(result.design)
+        typer.echo(text, nl=False)
+        for warning in result.design.warnings:
+            say(f"note: {warning}")
+        say(f"written: {folder}")
+        if result.reasons:
+            raise Infeasible(
+                f"no design within the limits ({result.reasons[0]}); "
+                f"the best attempt is in {folder}, marked infeasible"
+            )
+
+
+@app.command(epilog="Example:  profiletool table --openF 6,8,10 --csv")
+def table(
+    openF: Annotated[str, typer.Option("--openF", help="Cuts, mm, with commas.")] = "6,8,10",
+    formula: FormulaFile = None,
+    as_json: Json = False,
+    as_csv: Annotated[bool, typer.Option("--csv", help="Print the table as CSV.")] = False,
+    debug: Debug = False,
+) -> None:
+    """Print the theta table of a formula (the paper's Table 4)."""
+    with _exit_codes(debug):
+        from formula.errors import OutOfRange
+        from formula.table import make_table
+        from profiletool.pipeline import read_formula
+        from profiletool.report.text import theta_csv, theta_json, theta_text
+
+        try:
+            made = make_table(read_formula(formula), openF_mm=_numbers("--openF", openF))
+        except OutOfRange as error:
+            raise UsageError(str(error)) from error
+        layout = theta_json if as_json else theta_csv if as_csv else theta_text
+        typer.echo(layout(made), nl=False)
+
+
+@app.command(epilog="Example:  profiletool assign --openF 8,8,8,8,6,10 --theta 30,30,30,25,20,45")
+def assign(
+    openF: Annotated[str, typer.Option("--openF", help="Cut of every joint, mm, with commas.")],
+    theta: Annotated[str, typer.Option("--theta", help="Angle of every joint, deg, with commas.")],
+    formula: FormulaFile = None,
+    as_json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Choose pressure and alpha for given joints by the paper's table procedure."""
+    with _exit_codes(debug):
+        from formula.errors import OutOfRange
+        from formula.table import assign as look_up
+        from formula.table import make_table
+        from profiletool.pipeline import read_formula
+        from profiletool.report.text import assignment_json, assignment_text
+
+        cuts, angles = _numbers("--openF", openF), _numbers("--theta", theta)
+        if len(cuts) != len(angles):
+            raise UsageError(
+                f"--openF has {len(cuts)} numbers, --theta {len(angles)}: give one each per joint"
+            )
+        if min(angles) <= 0.0:
+            raise UsageError("--theta takes angles above 0; their direction does not matter here")
+        try:
+            found = look_up(make_table(read_formula(formula), openF_mm=cuts), cuts, angles)
+        except OutOfRange as error:
+            raise Infeasible(str(error)) from error
+        text = assignment_json(found) if as_json else assignment_text(cuts, angles, found)
+        typer.echo(text, nl=False)
+
+
+@app.command(epilog="Example:  profiletool template bulb_design/design.json --out bulb_template")
+def template(
+    file: Annotated[Path, typer.Argument(metavar="DESIGN.json", help="A design.json.")],
+    out: Annotated[
+        Path | None, typer.Option(help="Output folder (default: name + _template).")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an earlier template.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="No progress on stderr.")] = False,
+    debug: Debug = False,
+) -> None:
+    """Draw the cut template of a design anew."""
+    with _exit_codes(debug):
+        from profiletool import output, pipeline
+
+        folder = out or Path(f"{file.stem}_template")
+        output.check_free(folder, force)
+        _, files = pipeline.template_files(file)
+        output.write_folder(folder, {**files, "design.json": file.read_bytes()}, force)
+        (_silence if quiet else _say)(f"written: {folder}")
+
+
+def _say(line: str) -> None:
+    typer.echo(line, err=True)
+
+
+def _silence(line: str) -> None:
+    del line
+
+
+def _numbers(option: str, text: str) -> list[float]:
+    try:
+        values = [float(part) for part in text.split(",")]
+    except ValueError as error:
+        raise UsageError(f"{option} takes numbers with commas between, not {text!r}") from error
+    if not all(abs(value) < 1e6 for value in values):
+        raise UsageError(f"{option} takes finite numbers, not {text!r}")
+    return values
+
+
+if __name__ == "__main__":
+    main()

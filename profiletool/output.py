@@ -1,0 +1,74 @@
+"""The output folder: it appears whole or not at all."""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+
+from profiletool.errors import OutputError, UsageError
+
+_MARK = "design.json"  # what makes a folder ours to replace
+
+
+def check_free(folder: Path, force: bool) -> None:
+    """Refuse early to write over something.
+
+    Raises
+    ------
+    UsageError
+        When the folder exists and ``force`` is not given, or it is no folder of ours.
+    """
+    if not (folder.exists() or folder.is_symlink()):
+        return
+    if not folder.is_dir() or folder.is_symlink():
+        raise UsageError(f"{folder} exists and is no folder; choose another with --out")
+    ours = (folder / _MARK).is_file() or not any(folder.iterdir())
+    if force and not ours:
+        raise UsageError(
+            f"{folder} holds no {_MARK}, so --force will not replace it; choose another with --out"
+        )
+    if not force:
+        raise UsageError(f"{folder} exists; replace it with --force or choose another with --out")
+
+
+def write_folder(folder: Path, files: Mapping[str, bytes], force: bool) -> None:
+    """Write all files into a folder beside its place, then move it there in one step.
+
+    Raises
+    ------
+    UsageError
+        As `check_free`.
+    OutputError
+        When the system does not let us write; nothing is left behind then.
+    """
+    check_free(folder, force)
+    target = folder.absolute()
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=f".{target.name}-", dir=target.parent) as work:
+            fresh = Path(work) / "new"
+            fresh.mkdir()
+            for name, data in files.items():
+                (fresh / name).write_bytes(data)
+            _move_into_place(fresh, target, Path(work) / "old")
+    except OSError as error:
+        raise OutputError(
+            f"cannot write {folder}: {error.strerror or error}; choose another place with --out"
+        ) from error
+
+
+def _move_into_place(fresh: Path, target: Path, aside: Path) -> None:
+    had_one = target.is_dir()
+    if had_one:
+        target.rename(aside)
+    try:
+        fresh.rename(target)
+    except OSError:
+        if had_one:
+            aside.rename(target)
+        raise
+    with contextlib.suppress(OSError):
+        shutil.rmtree(aside)

@@ -1,0 +1,105 @@
+"""Profiles that come as vectors: DXF, SVG and CSV files."""
+
+from __future__ import annotations
+
+import stat
+from dataclasses import dataclass
+from pathlib import Path
+
+from profiletool.errors import NoObject, UnreadableInput
+from profiletool.profile.vector_chain import Chain, choose
+from profiletool.profile.vector_csv import read_csv
+from profiletool.profile.vector_dxf import read_dxf
+from profiletool.profile.vector_svg import read_svg
+from profiletool.records import FloatArray
+
+SUFFIXES = (".dxf", ".svg", ".csv")
+MAX_BYTES = 50_000_000
+
+
+@dataclass(frozen=True)
+class VectorProfile:
+    """A drawn profile.
+
+    Attributes
+    ----------
+    points : (N, 2) mm, x to the right, y up
+        In the drawing's own place and order of travel, no two successive ones alike, 3 at least.
+    closed : bool
+        The last point joins the first, which is not repeated.
+    """
+
+    points: FloatArray
+    closed: bool
+
+
+def load_vector(path: Path) -> VectorProfile:
+    """Read the one profile of a DXF, SVG or CSV file; the suffix tells which it is.
+
+    Parameters
+    ----------
+    path : Path
+        At most 50 MB. Units: see ``read_dxf``, ``read_svg`` and ``read_csv``.
+
+    Returns
+    -------
+    VectorProfile
+        In mm, y up. Of several lines, the longest closed one around all others, or the one that
+        is much longer than the rest.
+
+    Raises
+    ------
+    UnreadableInput
+        The file is missing, unsafe, damaged, too large or no profile.
+    NoObject
+        It holds no line, several alike, or one that crosses itself.
+    """
+    try:
+        suffix = path.suffix.lower()
+        if suffix not in SUFFIXES:
+            raise UnreadableInput("not a vector profile; give DXF, SVG or CSV")
+        data = _bytes(path)
+        if suffix == ".csv":
+            chain = read_csv(data)
+        else:
+            chain = choose(read_dxf(path) if suffix == ".dxf" else read_svg(data))
+        _check(chain)
+    except (UnreadableInput, NoObject) as error:
+        raise type(error)(_one_line(f"{path}: {error}")) from None
+    return VectorProfile(points=chain.points, closed=chain.closed)
+
+
+def _one_line(text: str) -> str:
+    """Join lines and show what a terminal could not, such as stray bytes, as '?'."""
+    return "".join(c if c.isprintable() else "?" for c in " ".join(text.split()))
+
+
+def _bytes(path: Path) -> bytes:
+    try:
+        status = path.stat()
+        if stat.S_ISDIR(status.st_mode):
+            raise UnreadableInput("a folder; name a DXF, SVG or CSV file")
+        if not stat.S_ISREG(status.st_mode):
+            raise UnreadableInput("not a regular file; name a DXF, SVG or CSV file")
+        if status.st_size > MAX_BYTES:
+            raise UnreadableInput(f"larger than {MAX_BYTES // 1_000_000} MB; simplify the drawing")
+        data = path.read_bytes()
+    except FileNotFoundError:
+        raise UnreadableInput("no such file; check the name") from None
+    except PermissionError:
+        raise UnreadableInput("no permission to read it; change its permissions") from None
+    except (OSError, ValueError) as error:
+        raise UnreadableInput(f"cannot be opened ({error}); check the name") from None
+    if not data.strip():
+        raise UnreadableInput("the file is empty; export the profile again")
+    return data
+
+
+def _check(chain: Chain) -> None:
+    import shapely
+
+    if len(chain.points) < 3:
+        raise UnreadableInput(f"only {len(chain.points)} distinct points; a profile needs 3")
+    line = shapely.LinearRing(chain.points) if chain.closed else shapely.LineString(chain.points)
+    if not line.is_simple:
+        raise NoObject("the line crosses or touches itself; redraw it as one plain line")

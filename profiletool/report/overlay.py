@@ -1,0 +1,297 @@
+"""The overlay: the picture with everything that was read off it and laid onto it, to scale."""
+
+from __future__ import annotations
+
+import io
+import textwrap
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
+from numpy.typing import NDArray
+
+from profiletool.joints.assign import TOWARD_DEG
+from profiletool.joints.kinematics import Bend, Shape
+from profiletool.joints.sectors import Sector
+from profiletool.profile.offset import offset_curve, offset_points
+from profiletool.records import Design, Joint, Profile
+
+# Okabe and Ito's palette: told apart by colour-blind readers too.
+INK, BLUE, SKY, GREEN, RED, YELLOW = (
+    "#1b1b1b", "#0072b2", "#56b4e9", "#009e73", "#d55e00", "#f0e442",
+)  # fmt: skip
+GREY = "#6f6f6f"
+
+_DPI = 130
+_LONGEST_PX = 1400  # the picture is shown no finer than the figure resolves
+_MARGIN_MM = 12.0
+_SCALE_BAR_MM = 20.0
+
+
+@dataclass(frozen=True)
+class Backdrop:
+    """The picture behind the drawing: pixels (H, W, 3), where they lie, and the object's outline.
+
+    ``extent`` is (left, right, bottom, top) in mm, object frame.
+    """
+
+    rgb: NDArray[np.uint8]
+    extent: tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """All that the overlay shows; ``backdrop`` is None for a drawn profile."""
+
+    backdrop: Backdrop | None
+    profile: Profile
+    sectors: Sequence[Sector]
+    design: Design
+    bends: Sequence[Bend]
+    bent: Shape
+    straight: Shape
+
+
+def backdrop_of(
+    rgb: NDArray[np.uint8], mm_per_px: float, origin_px: tuple[float, float]
+) -> Backdrop:
+    """Place a picture in the object frame, thinned to what the figure resolves."""
+    height, width = rgb.shape[:2]
+    every = max(1, round(max(height, width) / _LONGEST_PX))
+    x, y = origin_px
+    extent = np.array([-0.5 - x, width - 0.5 - x, y - height + 0.5, y + 0.5]) * mm_per_px
+    left, right, bottom, top = extent.tolist()
+    return Backdrop(rgb[::every, ::every], (left, right, bottom, top))
+
+
+def draw_overlay(scene: Scene) -> bytes:
+    """Draw the overlay as PNG."""
+    x0, x1, y0, y1 = _limits(scene)
+    tall = 8.6
+    wide = float(np.clip(tall * (x1 - x0) / (y1 - y0), 5.0, 13.0))
+    panel = 4.6
+    figure = Figure(figsize=(wide + panel, tall), dpi=_DPI, facecolor="white")
+    FigureCanvasAgg(figure)
+    axes = figure.add_axes((0.0, 0.0, wide / (wide + panel), 1.0))
+    axes.set(xlim=(x0, x1), ylim=(y0, y1), aspect="equal")
+    axes.set_axis_off()
+    _draw_picture(axes, scene)
+    _draw_sectors(axes, scene)
+    _draw_tube(axes, scene)
+    _draw_profile(axes, scene)
+    _draw_joints(axes, scene)
+    _draw_scale_bar(axes, (x0, x1, y0, y1))
+    side = figure.add_axes((wide / (wide + panel), 0.0, panel / (wide + panel), 1.0))
+    _draw_panel(side, scene)
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", metadata={"Software": None})
+    return buffer.getvalue()
+
+
+def _limits(scene: Scene) -> tuple[float, float, float, float]:
+    parts = [
+        scene.bent.facing, scene.bent.far, scene.straight.facing, scene.straight.far,
+        scene.profile.points,
+    ]  # fmt: skip
+    if scene.profile.outline is not None:
+        parts.append(scene.profile.outline)
+    points = np.concatenate(parts)
+    (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
+    m = _MARGIN_MM
+    return float(x0 - m), float(x1 + m), float(y0 - 1.4 * m), float(y1 + m)
+
+
+def _halo(width: float = 2.5, colour: str = "white") -> list[Any]:
+    return [withStroke(linewidth=width, foreground=colour)]
+
+
+def _draw_picture(axes: Any, scene: Scene) -> None:
+    outline = scene.profile.outline
+    if scene.backdrop is not None:
+        axes.imshow(scene.backdrop.rgb, extent=scene.backdrop.extent, alpha=0.8, zorder=0)
+    elif outline is not None:
+        axes.fill(*outline.T, color="#e9e6e0", zorder=0)
+    if outline is not None:
+        closed = np.vstack([outline, outline[:1]])
+        axes.plot(
+            *closed.T, color=YELLOW, lw=1.4, zorder=2, label="silhouette",
+            path_effects=_halo(2.8, "#00000090"),
+        )  # fmt: skip
+
+
+def _draw_sectors(axes: Any, scene: Scene) -> None:
+    """Bending sectors on the drawing: between profile and outer curve, perpendicular to them."""
+    profile, diameter = scene.profile, scene.design.tube.outer_diameter_mm
+    outer = offset_points(profile, diameter)
+    for k, (sector, joint) in enumerate(zip(scene.sectors, scene.design.joints, strict=True)):
+        half = 0.5 * joint.openF_mm
+        within = np.abs(profile.s - sector.centre) <= half
+        ring = np.concatenate([profile.points[within], outer[within][::-1]])
+        axes.fill(*ring.T, color=RED, alpha=0.16, lw=0, zorder=3)
+        for edge in (np.argmax(within), len(within) - 1 - np.argmax(within[::-1])):
+            axes.plot(
+                *np.stack([profile.points[edge], outer[edge]]).T, color=RED, lw=0.9, ls=(0, (4, 3)),
+                zorder=3, label="bending sectors" if k == 0 and edge == np.argmax(within) else None,
+            )  # fmt: skip
+
+
+def _draw_tube(axes: Any, scene: Scene) -> None:
+    straight, bent = scene.straight, scene.bent
+    ring = np.concatenate([straight.facing, straight.far[::-1], straight.facing[:1]])
+    axes.plot(*ring.T, color=GREY, lw=1.0, ls=(0, (2, 2)), zorder=4, label="tube at rest")
+    body = np.concatenate([bent.facing, bent.far[::-1], bent.facing[:1]])
+    axes.fill(*body.T, color=GREEN, alpha=0.16, lw=0, zorder=4)
+    axes.plot(
+        *body.T, color=GREEN, lw=1.8, zorder=5, path_effects=_halo(3.0),
+        label=f"tube at {scene.design.pressure_bar:.2f} bar (formula)",
+    )  # fmt: skip
+    for bend in scene.bends:
+        within = np.abs(bent.along - bend.centre_mm) <= 0.5 * bend.openF_mm + 1e-9
+        window = np.concatenate([bent.facing[within], bent.far[within][::-1]])
+        axes.fill(*window.T, facecolor=GREEN, alpha=0.30, lw=0, zorder=4)
+    root = scene.design.tube.root_mm - 0.5 * scene.design.joints[0].openF_mm
+    clamped = bent.along <= root + 1e-9
+    clamp = np.concatenate([bent.facing[clamped], bent.far[clamped][::-1]])
+    axes.fill(*clamp.T, facecolor="none", edgecolor=INK, hatch="////", lw=0.0, alpha=0.45, zorder=5)
+
+
+def _draw_profile(axes: Any, scene: Scene) -> None:
+    profile, diameter = scene.profile, scene.design.tube.outer_diameter_mm
+    axes.plot(
+        *offset_curve(profile, diameter).T, color=BLUE, lw=1.3, zorder=4,
+        label=f"outer curve, {diameter:g} mm off",
+    )  # fmt: skip
+    axes.plot(
+        *offset_curve(profile, 0.5 * diameter).T, color=BLUE, lw=1.0, ls=(0, (8, 2, 1, 2)),
+        zorder=4, label="axis curve",
+    )  # fmt: skip
+    axes.plot(
+        *profile.points.T, color=INK, lw=2.2, zorder=6, path_effects=_halo(4.2),
+        label="profile to follow",
+    )  # fmt: skip
+    bridged = np.where(profile.bridged[:, None], profile.points, np.nan)
+    if profile.bridged.any():
+        axes.plot(*bridged.T, color=SKY, lw=2.2, zorder=7, label="grooves bridged")
+
+
+def _draw_joints(axes: Any, scene: Scene) -> None:
+    profile, diameter = scene.profile, scene.design.tube.outer_diameter_mm
+    outer = offset_points(profile, diameter + 6.0)
+    inner = offset_points(profile, -7.0)
+    for sector, joint in zip(scene.sectors, scene.design.joints, strict=True):
+        at = int(np.searchsorted(profile.s, sector.centre))
+        axes.text(
+            *outer[at], str(joint.number), color="white", fontsize=11, weight="bold",
+            ha="center", va="center", zorder=9,
+            bbox={"boxstyle": "circle,pad=0.28", "fc": RED, "ec": "white", "lw": 1.2},
+        )  # fmt: skip
+        axes.text(
+            *inner[at], f"{_signed(joint):.0f}°", color=INK, fontsize=10.5, weight="bold",
+            ha="center", va="center", zorder=9, path_effects=_halo(3.0),
+        )  # fmt: skip
+
+
+def _signed(joint: Joint) -> float:
+    toward = joint.alpha_center_deg == TOWARD_DEG
+    return joint.theta_formula_deg if toward else -joint.theta_formula_deg
+
+
+def _draw_scale_bar(axes: Any, limits: tuple[float, float, float, float]) -> None:
+    x, y = limits[0] + 6.0, limits[2] + 6.0
+    axes.plot(
+        [x, x + _SCALE_BAR_MM], [y, y], color=INK, lw=3.5, solid_capstyle="butt", zorder=9,
+        path_effects=_halo(5.5),
+    )  # fmt: skip
+    axes.text(
+        x + _SCALE_BAR_MM / 2.0, y + 1.8, f"{_SCALE_BAR_MM:g} mm", ha="center", fontsize=10,
+        color=INK, zorder=9, path_effects=_halo(3.0),
+    )  # fmt: skip
+
+
+def _draw_panel(axes: Any, scene: Scene) -> None:
+    design = scene.design
+    axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0))
+    axes.set_axis_off()
+    y = 0.955
+    axes.text(0.03, y, _short(design.source.file, 30), fontsize=15, weight="bold", color=INK)
+    for text, colour in _status(design):
+        y -= 0.032
+        axes.text(0.03, y, text, fontsize=10.5, weight="bold", color=colour)
+    for text in _facts(design):
+        y -= 0.029
+        axes.text(0.03, y, text, fontsize=10, color=INK)
+    y = _draw_table(axes, design, y - 0.05)
+    y = _draw_legend(axes, scene, y)
+    _draw_warnings(axes, design, y)
+
+
+def _status(design: Design) -> list[tuple[str, str]]:
+    lines = []
+    if not design.feasible:
+        lines.append(("INFEASIBLE: best attempt", RED))
+    lines.append(("verified by FE", GREEN) if design.verified else ("NOT VERIFIED by FE", RED))
+    return lines
+
+
+def _facts(design: Design) -> list[str]:
+    tube, source, fit = design.tube, design.source, design.fit.formula
+    scale = "" if source.mm_per_px is None else f"  ({source.mm_per_px:.4g} mm per pixel)"
+    return [
+        f"operating pressure {design.pressure_bar:.2f} bar",
+        f"tube {tube.outer_diameter_mm:g} x {tube.wall_mm:g} mm, {tube.length_mm:.1f} mm long, "
+        f"root {tube.root_mm:.1f} mm",
+        f"{source.side} side, {source.profile_length_mm:.1f} mm to follow",
+        f"scale from {source.scale_source}{scale}",
+        f"predicted off the profile: {fit.rms_mm:.1f} mm RMS, {fit.max_mm:.1f} mm at most",
+    ]
+
+
+def _draw_table(axes: Any, design: Design, y: float) -> float:
+    columns = (0.06, 0.22, 0.40, 0.58, 0.75, 0.92)
+    heads = ("joint", "F\nmm", "openF\nmm", "α closed\n°", "α center\n°", "θ\n°")
+    for x, head in zip(columns, heads, strict=True):
+        axes.text(x, y, head, fontsize=9, color=GREY, ha="center", va="center", linespacing=1.3)
+    y -= 0.027
+    axes.plot([0.02, 0.98], [y, y], color=INK, lw=0.8)
+    step = min(0.027, 0.30 / len(design.joints))
+    for joint in design.joints:
+        y -= step
+        cells = (
+            f"{joint.number}", f"{joint.F_mm:.1f}", f"{joint.openF_mm:g}",
+            f"{joint.alpha_closed_deg:g}", f"{joint.alpha_center_deg:g}",
+            f"{joint.theta_formula_deg:.1f}",
+        )  # fmt: skip
+        for x, cell in zip(columns, cells, strict=True):
+            axes.text(x, y, cell, fontsize=10, color=INK, ha="center", va="center")
+    return y - 0.022
+
+
+def _draw_legend(axes: Any, scene: Scene, y: float) -> float:
+    main = axes.figure.axes[0]
+    handles, labels = main.get_legend_handles_labels()
+    legend = axes.legend(
+        handles, labels, loc="upper left", bbox_to_anchor=(0.0, y), fontsize=9.5, frameon=False,
+        handlelength=2.6, labelspacing=0.45,
+    )  # fmt: skip
+    for line in legend.get_lines():
+        line.set_path_effects([])
+    return y - 0.026 * len(labels) - 0.045
+
+
+def _draw_warnings(axes: Any, design: Design, y: float) -> None:
+    for warning in design.warnings:
+        lines = textwrap.wrap("• " + warning, 58, subsequent_indent="   ")
+        height = 0.0205 * len(lines)
+        if y - height < 0.02:
+            axes.text(0.03, y, "• more in design.json", fontsize=8.5, color=GREY, va="top")
+            return
+        axes.text(0.03, y, "\n".join(lines), fontsize=8.5, color=GREY, va="top", linespacing=1.25)
+        y -= height + 0.008
+
+
+def _short(text: str, most: int) -> str:
+    return text if len(text) <= most else text[: most - 1] + "…"

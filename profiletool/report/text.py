@@ -1,0 +1,84 @@
+"""Results as text: for the screen, as JSON and as CSV."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+
+from formula.table import Assignment, Table
+from profiletool.records import Design
+
+_COLUMNS = ("pressure_bar", "openF_mm", "alpha_closed_deg", "theta_deg")
+
+
+def joint_table(design: Design) -> str:
+    """Lay out the joints of a design as the paper's Table 5."""
+    lines = [
+        f"{design.source.file}: {len(design.joints)} joints at {design.pressure_bar:.2f} bar, "
+        f"tube {design.tube.length_mm:.1f} mm long, root {design.tube.root_mm:.1f} mm",
+        "joint    F mm  openF mm  alpha_closed deg  alpha_center deg  theta deg  formula deg",
+    ]
+    lines += [
+        f"{j.number:5d}  {j.F_mm:6.1f}  {j.openF_mm:8g}  {j.alpha_closed_deg:16g}  "
+        f"{j.alpha_center_deg:16g}  {j.theta_target_deg:9.1f}  {j.theta_formula_deg:11.1f}"
+        for j in design.joints
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def theta_text(table: Table) -> str:
+    """Lay out a theta table as the paper's Table 4, one block for each openF."""
+    lines = []
+    for j, openF in enumerate(table.openF_mm):
+        lines.append(f"theta (deg) at openF {openF:g} mm")
+        lines.append("   bar" + "".join(f"{alpha:7g}" for alpha in table.alpha_deg) + "  alpha deg")
+        for i, P in enumerate(table.pressures_bar):
+            cells = "".join(f"{theta:7.1f}" for theta in table.theta_deg[i, j])
+            lines.append(f"{P:6.2f}{cells}")
+    return "\n".join(lines) + "\n"
+
+
+def theta_json(table: Table) -> str:
+    """Write the cells of a theta table as a JSON list."""
+    cells = [dict(zip(_COLUMNS, (*key, round(t, 4)), strict=True)) for *key, t in _cells(table)]
+    return json.dumps(cells) + "\n"
+
+
+def theta_csv(table: Table) -> str:
+    """Write the cells of a theta table as CSV."""
+    lines = [",".join(_COLUMNS)]
+    lines += [
+        f"{P:.2f},{openF:g},{alpha:g},{theta:.2f}" for P, openF, alpha, theta in _cells(table)
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def assignment_text(openF: Sequence[float], wanted: Sequence[float], found: Assignment) -> str:
+    """Lay out the result of the look-up."""
+    rows = zip(openF, wanted, found.alpha_closed_deg, found.theta_deg, strict=True)
+    lines = [
+        f"pressure {found.pressure_bar:.2f} bar",
+        "joint  openF mm  theta deg  alpha_closed deg  formula deg",
+    ]
+    lines += [
+        f"{number:5d}  {cut:8g}  {theta:9g}  {alpha:16g}  {got:11.1f}"
+        for number, (cut, theta, alpha, got) in enumerate(rows, start=1)
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def assignment_json(found: Assignment) -> str:
+    """Write the result of the look-up as JSON."""
+    tree = {
+        "pressure_bar": found.pressure_bar,
+        "alpha_closed_deg": list(found.alpha_closed_deg),
+        "theta_deg": [round(value, 4) for value in found.theta_deg],
+    }
+    return json.dumps(tree) + "\n"
+
+
+def _cells(table: Table) -> Iterator[tuple[float, float, float, float]]:
+    for i, P in enumerate(table.pressures_bar):
+        for j, openF in enumerate(table.openF_mm):
+            for k, alpha in enumerate(table.alpha_deg):
+                yield P, openF, alpha, float(table.theta_deg[i, j, k])

@@ -1,0 +1,51 @@
+"""The sheet as DXF R2000 in mm."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from ezdxf import options, units  # type: ignore[attr-defined]
+from ezdxf.filemanagement import new
+
+from profiletool.template.sheet import COLOURS, Sheet
+
+
+def write_dxf(sheet: Sheet) -> bytes:
+    """Return the bytes of a DXF file of ``sheet``.
+
+    Every line is an LWPOLYLINE on its layer, the outline a closed one. The same sheet gives the
+    same bytes: times and identifiers are fixed.
+    """
+    with _fixed_metadata():
+        doc = new("R2000", units=units.MM)
+        # ezdxf takes the unit of length along, but leaves the measurement system to the caller.
+        doc.header["$MEASUREMENT"] = 1
+        modelspace = doc.modelspace()
+        for layer in sheet.layers:
+            doc.layers.add(layer.name, color=COLOURS[layer.name][0])
+            for line in layer.lines:
+                modelspace.add_lwpolyline(
+                    line.tolist(), close=layer.closed, dxfattribs={"layer": layer.name}
+                )
+        x0, y0, x1, y1 = sheet.bounds
+        modelspace.reset_extents((x0, y0, 0), (x1, y1, 0))
+        modelspace.reset_limits((x0, y0), (x1, y1))
+        doc.set_modelspace_vport(
+            height=1.1 * max(x1 - x0, y1 - y0), center=((x0 + x1) / 2, (y0 + y1) / 2)
+        )
+        stream = io.StringIO()
+        doc.write(stream)
+        return bytes(doc.encode(stream.getvalue()))
+
+
+@contextmanager
+def _fixed_metadata() -> Iterator[None]:
+    """Have ezdxf write fixed times, identifiers and version; put its option back at the end."""
+    before = options.write_fixed_meta_data_for_testing
+    options.write_fixed_meta_data_for_testing = True
+    try:
+        yield
+    finally:
+        options.write_fixed_meta_data_for_testing = before

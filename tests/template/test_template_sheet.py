@@ -1,0 +1,202 @@
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shapely import LineString, Polygon, STRtree, box, linestrings
+
+from profiletool.template.layout import build_sheet
+from profiletool.template.sheet import Text
+from profiletool.template.strokes import GLYPHS, text_strokes, text_width
+from profiletool.template.unroll import best_seam
+from tests.template.designs import bulb, design_of, joint, long_tube, short_tube, skew
+
+DESIGNS = [bulb, short_tube, long_tube, skew]
+
+
+def tight():
+    """Twelve joints so close that hardly any label fits, one of them beyond the tube's end."""
+    joints = [joint(k + 1, 7, 6, 84, (270, 90)[k % 2], at=8 + 7 * k) for k in range(12)]
+    return replace(design_of(joints, 84.0, "Röhre ☃ & <co>.png"), feasible=False, verified=False)
+
+
+def segments(sheet):
+    """All segments of all layers, (N, 2 ends, 2)."""
+    closed = [np.vstack([p, p[:1]]) for layer in sheet.layers if layer.closed for p in layer.lines]
+    lines = [line for layer in sheet.layers if not layer.closed for line in layer.lines]
+    return np.vstack([np.stack([line[:-1], line[1:]], axis=1) for line in closed + lines])
+
+
+def coincident(found, near=1e-5):
+    """Pairs of segments (N, 2, 2) that lie on each other over more than a point."""
+    tree = STRtree(linestrings(found))
+    a, b = tree.query(linestrings(found), predicate="dwithin", distance=near)
+    a, b = a[a < b], b[a < b]
+    start, along = found[a, 0], np.diff(found[a], axis=1)[:, 0]
+    length = np.linalg.norm(along, axis=1)
+    along /= length[:, None]
+    ends = found[b] - start[:, None]
+    aside = np.abs(ends[..., 0] * along[:, None, 1] - ends[..., 1] * along[:, None, 0])
+    reach = np.sort((ends * along[:, None]).sum(axis=2), axis=1)
+    overlap = np.minimum(reach[:, 1], length) - np.maximum(reach[:, 0], 0)
+    bad = (aside.max(axis=1) < near) & (overlap > near)
+    return list(zip(a[bad].tolist(), b[bad].tolist(), strict=True))
+
+
+def test_coincident_segments_are_seen():
+    found = [[(0, 0), (5, 0)], [(9, 0), (4, 0)], [(2, -1), (2, 1)], [(5, 0), (5, 3)]]
+    assert coincident(np.array(found, float)) == [(0, 1)]
+    assert coincident(np.array([[(0, 0), (1, 2)], [(-1, -2), (3, 6)]], float)) == [(0, 1)]
+
+
+@pytest.mark.parametrize("build", [*DESIGNS, tight])
+def test_no_line_is_drawn_twice(build):
+    assert coincident(segments(build_sheet(build()))) == []
+
+
+@pytest.mark.parametrize("build", [*DESIGNS, tight])
+def test_slits_lie_inside_the_outline(build):
+    sheet = build_sheet(build())
+    piece = Polygon(sheet.outline)
+    assert piece.is_valid
+    assert piece.exterior.is_ccw
+    for slit in sheet.slits:
+        assert piece.covers(LineString([(slit.x_mm, slit.y_start_mm), (slit.x_mm, slit.y_end_mm)]))
+
+
+@pytest.mark.parametrize("build", DESIGNS)
+def test_outline_is_the_sheet_with_a_notch_in_the_root(build):
+    design = build()
+    sheet = build_sheet(design)
+    length, roll = sheet.size_mm
+    np.testing.assert_allclose(np.ptp(sheet.outline, axis=0), [length, roll], atol=1e-9)
+    notch = box(0, 0, length, roll).difference(Polygon(sheet.outline))
+    first = design.joints[0]
+    assert 2 < notch.area < 10
+    assert notch.bounds[1] == 0
+    assert 0 < notch.bounds[0] < notch.bounds[2] < first.centre_mm - first.openF_mm / 2
+
+
+@pytest.mark.parametrize("build", [*DESIGNS, tight])
+def test_lettering_stands_clear(build):
+    """No text meets another one, a slit, the outline or any other line."""
+    sheet = build_sheet(build())
+    boxes = [box(*text.box) for text in sheet.texts]
+    assert [(a, b) for a, b in combinations(boxes, 2) if a.intersects(b)] == []
+    others = [LineString(line.points) for line in sheet.drawn if len(line.points) < 10]
+    cuts = [line for layer in sheet.layers[:2] for line in layer.lines]
+    others += [LineString(np.vstack([line, line[:1]])) for line in cuts]
+    tree = STRtree(others)
+    assert tree.query([b.buffer(0.2) for b in boxes], predicate="intersects").size == 0
+
+
+@pytest.mark.parametrize("build", DESIGNS)
+def test_every_joint_is_named_on_every_turn(build):
+    design = build()
+    sheet = build_sheet(design)
+    middle = sheet.size_mm[1] / 2
+    for j in design.joints:
+        own = [t for t in sheet.texts if t.text == str(j.number) and t.layer == "MARK"]
+        inside = [t for t in own if 0 < t.y < sheet.size_mm[1]]
+        assert len(own) == 4
+        assert [t.y > middle for t in inside] == [False, True]
+        assert all(abs(np.mean(t.box[::2]) - j.centre_mm) < 8 for t in inside)
+        small = f"{j.openF_mm:g}/{j.alpha_closed_deg:g}°"
+        assert sum(t.text == small for t in sheet.texts) >= 2
+    assert min(text.height for text in sheet.texts) >= 2.5
+
+
+def test_register_line_is_one_turn_before_the_end_and_open_at_the_crossing():
+    sheet = build_sheet(bulb())
+    y = 2 * np.pi * 10.25
+    pieces = [line.points for line in sheet.drawn if np.allclose(line.points[:, 1], y)]
+    inside = [p for p in pieces if p[:, 0].max() < 103]
+    assert len(inside) == 2
+    cut = [slit.x_mm for slit in sheet.slits if slit.joint == 6]
+    assert inside[0].max() > 60
+    assert inside[0][:, 0].max() < min(cut) < max(cut) < inside[1][:, 0].min()
+
+
+def said(design):
+    return " ".join(text.text for text in build_sheet(design).texts)
+
+
+def test_sheet_says_what_is_wrong():
+    good = said(short_tube())
+    assert "NOT VERIFIED" in good
+    assert "INFEASIBLE" not in good
+    assert "crosses" not in good
+    bad = said(tight())
+    assert "INFEASIBLE" in bad
+    assert "Joint 12: rows beyond" in bad
+    assert "Joint 6: cut crosses the weld line" in said(bulb())
+    assert "NOT VERIFIED" not in said(bulb())
+    assert build_sheet(tight()).title.endswith("INFEASIBLE - NOT VERIFIED")
+    assert "only 1.2 mm from the weld line" in said(skew())
+
+
+def test_sheet_refuses_a_gauze_without_turns():
+    with pytest.raises(ValueError, match="at least one turn"):
+        build_sheet(replace(bulb(), gauze=replace(bulb().gauze, turns=0)))
+
+
+@pytest.mark.parametrize("turns", [1, 3])
+def test_other_turns(turns):
+    design = replace(bulb(), gauze=replace(bulb().gauze, turns=turns))
+    sheet = build_sheet(design)
+    assert coincident(segments(sheet)) == []
+    assert any("Register" in text.text for text in sheet.texts) == (turns > 1)
+
+
+@settings(max_examples=15, deadline=None)
+@given(
+    rows=st.lists(
+        st.tuples(
+            st.floats(10, 25),
+            st.sampled_from([6, 8, 10, 14]),
+            st.floats(60, 180),
+            st.floats(0, 360),
+        ),
+        min_size=1,
+        max_size=6,
+    )
+)
+def test_any_design_gives_a_clean_sheet(rows):
+    at, joints = 10.0, []
+    for k, (F, openF, alpha, center) in enumerate(rows, start=1):
+        joints.append(joint(k, F, openF, alpha, center, at=at))
+        at += F
+    sheet = build_sheet(design_of(joints, at))
+    assert sheet.seam == best_seam(joints)
+    piece = Polygon(sheet.outline).buffer(1e-9)
+    assert all(piece.covers(LineString(line)) for line in sheet.layers[1].lines)
+    assert coincident(segments(sheet)) == []
+
+
+@pytest.mark.parametrize("char", [*GLYPHS, "☃"])
+def test_glyph_fills_its_width_and_runs_over_nothing(char):
+    strokes = text_strokes(char, 12.0)
+    points = np.vstack(strokes)
+    assert points.min(axis=0).tolist() >= [0, 0]
+    assert points[:, 0].max() == text_width(char, 12.0)
+    assert points[:, 1].max() <= 12
+    assert coincident(np.vstack([np.stack([s[:-1], s[1:]], axis=1) for s in strokes])) == []
+
+
+def test_lower_case_and_accents_are_drawn_as_capitals():
+    for a, b in zip(text_strokes("süß", 3), text_strokes("SUSS", 3), strict=True):
+        np.testing.assert_array_equal(a, b)
+    assert text_width("", 3) == 0
+
+
+def test_text_box_holds_its_strokes():
+    for anchor in ("left", "centre", "right"):
+        for upward in (False, True):
+            text = Text("NOTE", "HOE", 7.0, -3.0, 4.0, anchor, upward)
+            points = np.vstack(text.lines())
+            found = (*points.min(axis=0), *points.max(axis=0))
+            assert found == pytest.approx(text.box)
