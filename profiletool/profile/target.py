@@ -9,7 +9,7 @@ import shapely
 from numpy.typing import NDArray
 
 from profiletool.errors import NoObject
-from profiletool.profile.curve import arc_length, make_curve, smoothing_width
+from profiletool.profile.curve import Curve, arc_length, make_curve, smoothing_width
 from profiletool.profile.offset import reachable_line, reachable_outline
 from profiletool.profile.side import Stretch, side_of
 from profiletool.records import FloatArray, Profile, Side
@@ -86,8 +86,8 @@ def _profile(stretch: Stretch, reach: Reach, outline: FloatArray | None) -> Prof
     curvature = sign * whole.curvature
     first, last = np.searchsorted(whole.s, [stretch.start, stretch.end - 0.5 * STEP_MM])
     if outline is not None:
-        down = sign * np.cos(whole.heading[first : last + 1])
-        last = first + _above_base(down, curvature[first : last + 1], reach)
+        side = slice(int(first), int(last) + 1)
+        last = first + _above_base(whole, side, curvature, reach)
     length = whole.s[last] - whole.s[first]
     if length < 4.0 * reach.radius_mm:
         raise NoObject(
@@ -108,22 +108,25 @@ def _profile(stretch: Stretch, reach: Reach, outline: FloatArray | None) -> Prof
     )
 
 
-def _above_base(down: FloatArray, curvature: FloatArray, reach: Reach) -> int:
-    """Index of the last point of a side above the object's base.
+def _above_base(whole: Curve, side: slice, curvature: FloatArray, reach: Reach) -> int:
+    """Index, counted from the side's first point, of its last point above the object's base.
 
     The base begins at the corner, tighter than the tube, that leads under the object (the foot of
     a bottle, the rim of a lamp cap); the side ends before it, and before the headings that the
     corner bends. An object that is round below (an egg) has no such corner: there the base is
     what faces straight down to within 45 deg.
-
-    ``down`` is how far the outward normal points down, as a cosine.
     """
-    undercut = _last_run(down > _UNDERCUT)
-    tight = np.flatnonzero(curvature[undercut:] > 1.0 / reach.radius_mm)
-    if tight.size == 0:
-        return _last_run(down > _STRAIGHT_DOWN)
-    corner = undercut + int(tight[0])
-    gentle = np.flatnonzero(curvature[:corner] <= 1.0 / reach.radius_mm)
+    sign = 1.0 if reach.side == "left" else -1.0
+    points = whole.points[side]
+    # Looking ahead by the tube's radius steps over grooves of the underside.
+    ahead = np.minimum(np.arange(len(points)) + round(reach.radius_mm / STEP_MM), len(points) - 1)
+    across, drop = (points[ahead] - points).T
+    undercut = _last_run(sign * across >= _UNDERCUT * np.hypot(across, drop))
+    tight = curvature[side] > 1.0 / reach.radius_mm
+    corners = np.flatnonzero(tight[undercut:])
+    if corners.size == 0:
+        return _last_run(sign * np.cos(whole.heading[side]) > _STRAIGHT_DOWN)
+    gentle = np.flatnonzero(~tight[: undercut + int(corners[0])])
     before = int(gentle[-1]) if gentle.size else 0
     return max(before - round(_window(reach) / STEP_MM), 0)
 

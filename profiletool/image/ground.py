@@ -1,0 +1,162 @@
+"""The ground an object lies on: a smooth colour surface and how far each pixel is from it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from profiletool.records import FloatArray
+
+FloatImage = NDArray[np.float32]
+BoolImage = NDArray[np.bool_]
+
+_FRAME_SHARE = 0.04  # width of the border that is looked at, of the shorter side
+_SAMPLES = 8_000
+_FLOOR_LAB = 1.5  # below this, colour differences are compression and rounding, not objects
+_TUKEY = 4.0
+_DEGREE = 4
+_POWERS = [(n - k, k) for n in range(_DEGREE + 1) for k in range(n + 1)]
+_BORDER_TERMS = 6  # a quadratic surface; the whole picture bears a quartic one
+
+
+@dataclass(frozen=True)
+class Ground:
+    """The ground of a picture, in CIE Lab.
+
+    Attributes
+    ----------
+    surface : (H, W, 3)
+        The ground's colour, also where the object hides it.
+    distance : (H, W)
+        Difference to it in units of its own scatter.
+    noise : float
+        The distance that the ground itself hardly exceeds.
+    plain_share : float
+        Part of the border that the surface explains.
+    """
+
+    surface: FloatImage
+    distance: FloatImage
+    noise: float
+    plain_share: float
+
+
+def to_lab(rgb: NDArray[np.uint8]) -> FloatImage:
+    """CIE Lab, L 0..100, of an (H, W, 3) picture."""
+    scaled = rgb.astype(np.float32) / np.float32(255)
+    return np.asarray(cv2.cvtColor(scaled, cv2.COLOR_RGB2LAB), np.float32)
+
+
+def fit_ground(lab: FloatImage, usable: BoolImage) -> Ground:
+    """Fit a smooth colour surface to the border, then to all that continues it inward.
+
+    Parameters
+    ----------
+    lab : (H, W, 3)
+        Picture in CIE Lab.
+    usable : (H, W)
+        False where a pixel says nothing about the ground.
+    """
+    height, width = lab.shape[:2]
+    border = _sampled(usable & _frame(usable.shape))
+    if len(border[0]) < 2 * _BORDER_TERMS:
+        border = _sampled(usable)
+    colours = lab[border].astype(np.float64)
+    design = _basis(border, lab.shape)
+    first, weights = _border_fit(design[:, :_BORDER_TERMS], colours)
+    everywhere = tuple(np.concatenate(pair) for pair in zip(border, _sampled(usable), strict=True))
+    coefficients = _grown_fit(
+        _basis(everywhere, lab.shape), lab[everywhere].astype(np.float64), first, len(border[0])
+    )
+    surface = _surface(coefficients, height, width)
+    residuals = colours - design @ coefficients
+    scatter = (residuals * weights[:, None]).T @ residuals / weights.sum()
+    whitening = np.linalg.cholesky(np.linalg.inv(scatter + _FLOOR_LAB**2 * np.eye(3)))
+    distance = np.linalg.norm((lab - surface) @ whitening.astype(np.float32), axis=2)
+    inlying = weights > 0.1
+    at_border = np.linalg.norm(residuals[inlying] @ whitening, axis=1)
+    return Ground(
+        surface=surface,
+        distance=distance,
+        noise=float(np.quantile(at_border, 0.995)),
+        plain_share=float(inlying.mean()),
+    )
+
+
+def _frame(shape: tuple[int, ...]) -> BoolImage:
+    width = max(2, round(_FRAME_SHARE * min(shape)))
+    frame = np.ones(shape, bool)
+    frame[width:-width, width:-width] = False
+    return frame
+
+
+def _sampled(mask: BoolImage) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    rows, columns = np.nonzero(mask)
+    step = max(1, len(rows) // _SAMPLES)
+    return rows[::step], columns[::step]
+
+
+def _unit(index: NDArray[np.intp], size: int) -> FloatArray:
+    return 2.0 * index / (size - 1) - 1.0
+
+
+def _basis(index: Sequence[NDArray[np.intp]], shape: tuple[int, ...]) -> FloatArray:
+    """Monomials to the fourth degree at rows and columns; the quadratic ones come first."""
+    v, u = _unit(index[0], shape[0]), _unit(index[1], shape[1])
+    return np.stack([u**p * v**q for p, q in _POWERS], axis=-1)
+
+
+def _surface(coefficients: FloatArray, height: int, width: int) -> FloatImage:
+    """The fitted polynomial at every pixel, as products of its powers along x and y."""
+    table = np.zeros((_DEGREE + 1, _DEGREE + 1, 3))
+    for (p, q), row in zip(_POWERS, coefficients, strict=True):
+        table[q, p] = row
+    down = np.vander(_unit(np.arange(height), height), _DEGREE + 1, increasing=True)
+    across = np.vander(_unit(np.arange(width), width), _DEGREE + 1, increasing=True)
+    planes = [down @ table[..., channel] @ across.T for channel in range(3)]
+    return np.stack(planes, axis=2).astype(np.float32)
+
+
+def _border_fit(design: FloatArray, colours: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Reweighted least squares: absolute deviations first, then Tukey's biweight."""
+    weights = np.ones(len(design))
+    coefficients = np.zeros((design.shape[1], colours.shape[1]))
+    for step in range(14):
+        weighted = design * weights[:, None]
+        coefficients = np.linalg.solve(weighted.T @ design, weighted.T @ colours)
+        misfit = np.linalg.norm(colours - design @ coefficients, axis=1)
+        if step < 8:
+            weights = 1.0 / np.maximum(misfit, 0.5)
+        else:
+            weights = _biweight(misfit, _scale(misfit))
+    return coefficients, weights
+
+
+def _grown_fit(
+    design: FloatArray, colours: FloatArray, first: FloatArray, at_border: int
+) -> FloatArray:
+    """Follow the light inward from the border's surface: a lamp's spot is seen only there."""
+    start = np.zeros((design.shape[1], colours.shape[1]))
+    start[: len(first)] = first
+    # Held to the border's surface where no ground is seen, as under a large object.
+    stiffness = 1e-3 * len(design) * np.eye(design.shape[1])
+    coefficients = start
+    scale = _scale(np.linalg.norm(colours - design @ start, axis=1)[:at_border])
+    for _ in range(10):
+        misfit = np.linalg.norm(colours - design @ coefficients, axis=1)
+        weighted = design * _biweight(misfit, scale)[:, None]
+        right = weighted.T @ (colours - design @ start)
+        coefficients = start + np.linalg.solve(weighted.T @ design + stiffness, right)
+    return coefficients
+
+
+def _scale(misfit: FloatArray) -> float:
+    return max(1.0, 1.4826 * float(np.median(misfit)))
+
+
+def _biweight(misfit: FloatArray, scale: float) -> FloatArray:
+    return np.clip(1.0 - (misfit / (_TUKEY * scale)) ** 2, 1e-6, None) ** 2

@@ -1,0 +1,126 @@
+"""The outline of the one object in a picture, by the first method that works."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from profiletool.errors import NoObject
+from profiletool.image.contour import largest_region, outline, smoothed
+from profiletool.image.ground import BoolImage, FloatImage, fit_ground, to_lab
+from profiletool.image.marker import paint_mask, with_quiet_zone
+from profiletool.image.matte import edge_field
+from profiletool.image.region import (
+    choose_object,
+    edges_touched,
+    grabcut_region,
+    region_on_ground,
+)
+from profiletool.records import FloatArray, Picture, Silhouette
+
+_FINE_PIXELS = 6_000_000  # the contour is taken at no more than this
+_ROUGH_PIXELS = 400_000  # the object is told from the ground at no more than this
+_GRABCUT_PIXELS = 200_000
+_PLAIN_SHARE = 0.6  # of the border must follow one smooth surface
+_LARGEST_NOISE = 6.0
+_BLUR_PX = 0.8
+
+
+def find_silhouette(picture: Picture, ignore: Sequence[FloatArray] = ()) -> Silhouette:
+    """Find the outline of the one object in a picture.
+
+    Parameters
+    ----------
+    picture : Picture
+        Of one object, with an alpha matte or on a ground of another colour.
+    ignore : sequence of (4, 2)
+        Markers, in the picture frame: they and the white paper round them count as ground.
+
+    Returns
+    -------
+    Silhouette
+        ``touches`` names the frame edges that the object runs into; a cut-out that is trimmed
+        on all four sides runs into none.
+
+    Raises
+    ------
+    NoObject
+        Nothing found, several objects alike, or one that covers the whole picture.
+    """
+    polygons = [with_quiet_zone(corners) for corners in ignore]
+    fine_step = math.ceil(math.sqrt(picture.rgb[..., 0].size / _FINE_PIXELS))
+    if picture.alpha is not None and _informative(picture.alpha):
+        method, field = "alpha matte", _alpha_field(picture.alpha, fine_step)
+    else:
+        method, field = _photo_field(_reduced(picture.rgb, fine_step), polygons, fine_step)
+    mask = largest_region(field)
+    contour, noise = smoothed(outline(field, mask))
+    touches = edges_touched(mask)
+    if method == "alpha matte" and _trimmed(picture.alpha):
+        touches = frozenset()
+    if fine_step > 1:
+        contour = (contour + 0.5) * fine_step - 0.5
+        height, width = picture.rgb.shape[:2]
+        mask = largest_region(cv2.resize(field, (width, height)))
+    return Silhouette(contour, mask, method, noise * fine_step, touches)
+
+
+def _informative(alpha: NDArray[np.uint8]) -> bool:
+    """Whether an alpha channel cuts something out; rounded corners alone do not."""
+    share = float((alpha >= 128).mean())
+    if share == 0.0:
+        raise NoObject("the picture is transparent everywhere; export it with its content")
+    return share < 0.98
+
+
+def _trimmed(alpha: NDArray[np.uint8] | None) -> bool:
+    return alpha is not None and len(edges_touched(alpha > 0)) == 4
+
+
+def _alpha_field(alpha: NDArray[np.uint8], step: int) -> FloatImage:
+    field = _reduced(alpha, step).astype(np.float32) / np.float32(255)
+    padded = np.pad(field > 0.5, 1)  # a trimmed cut-out may run along the frame
+    chosen = choose_object(padded)[1:-1, 1:-1].astype(np.uint8)
+    # The soft rim stays, other regions go.
+    return field * cv2.dilate(chosen, np.ones((3, 3), np.uint8))
+
+
+def _reduced(image: NDArray[np.uint8], step: float) -> NDArray[np.uint8]:
+    """Reduce by a factor, averaging; a factor of 1 returns the picture itself."""
+    if step <= 1:
+        return image
+    height, width = image.shape[:2]
+    size = max(1, round(width / step)), max(1, round(height / step))
+    return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), np.uint8)
+
+
+def _photo_field(
+    rgb: NDArray[np.uint8], polygons: list[FloatArray], fine_step: int
+) -> tuple[str, FloatImage]:
+    """Method and soft field of a picture without a matte."""
+    step = max(1.0, math.sqrt(rgb[..., 0].size / _ROUGH_PIXELS))
+    small = _reduced(rgb, step)
+    ignored = paint_mask(polygons, small.shape[:2], step * fine_step)
+    lab = cv2.GaussianBlur(to_lab(small), (0, 0), _BLUR_PX)
+    ground = fit_ground(lab, ~ignored)
+    ground = replace(ground, distance=np.where(ignored, np.float32(0), ground.distance))
+    if ground.plain_share > _PLAIN_SHARE and ground.noise < _LARGEST_NOISE:
+        method, region = "plain ground", region_on_ground(lab, ground)
+    else:
+        method, region = "grabcut", _by_grabcut(small, ground.distance, ignored)
+    return method, edge_field(rgb, region, small)
+
+
+def _by_grabcut(rgb: NDArray[np.uint8], distance: FloatImage, ignored: BoolImage) -> BoolImage:
+    step = max(1.0, math.sqrt(distance.size / _GRABCUT_PIXELS))
+    small = _reduced(rgb, step)
+    height, width = small.shape[:2]
+    shrunk = cv2.resize(distance, (width, height), interpolation=cv2.INTER_AREA)
+    barred = cv2.resize(ignored.view(np.uint8), (width, height)) > 0
+    region = grabcut_region(small, shrunk, barred).astype(np.float32)
+    return np.asarray(cv2.resize(region, distance.shape[::-1]) > 0.5)
