@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from formula.errors import OutOfRange
 from formula.table import PRESSURES_BAR, Table, assign, make_table
 from formula.theta import Formula
 from profiletool.joints.kinematics import Bend, facing_stretch
@@ -18,6 +19,7 @@ from profiletool.records import FloatArray, Joint, Material, Pose, Profile
 TOWARD_DEG, AWAY_DEG = 270.0, 90.0  # alpha_center of a joint that bends toward the object, or away
 WRAP_MM = 2.0  # least wrapped length between two windows: one mesh
 END_WRAP_MM = 4.0  # least wrapped length at the closed end: the paper's mould leaves 4 mm there
+INTERFERENCE_MM = 0.3  # how deep a straight piece of tube may lie in the object as drawn
 NEAR_DEG = 3.0  # an angle of the table this much above the wanted one is near enough
 _F_DECIMALS = 1
 
@@ -56,8 +58,15 @@ def theta_table(formula: Formula, material: Material) -> Table:
     low, high = formula.openF_range_mm
     pitch = material.pitch_mm
     cuts = np.arange(np.ceil(low / pitch - 1e-9), np.floor(high / pitch + 1e-9) + 1.0) * pitch
+    if cuts.size == 0:
+        raise OutOfRange(
+            f"no whole number of {pitch:g} mm meshes lies within the {low:g} to {high:g} mm of "
+            f'openF that formula "{formula.name}" holds for'
+        )
     most = min(material.max_pressure_bar, formula.pressure_range_bar[1])
     pressures = [row for row in PRESSURES_BAR if row <= most + 1e-9]
+    if not pressures:
+        raise OutOfRange(f"the table begins at {PRESSURES_BAR[0]:g} bar, above {most:g} bar")
     return make_table(formula, openF_mm=cuts.tolist(), pressures_bar=pressures)
 
 
@@ -69,6 +78,7 @@ def joint_rules(table: Table, material: Material, tolerance_mm: float) -> Rules:
         theta_most_rad=np.radians(table.theta_deg.max(axis=(0, 2))),
         wrap_mm=WRAP_MM,
         tolerance_mm=tolerance_mm,
+        interference_mm=min(INTERFERENCE_MM, tolerance_mm),
     )
 
 
@@ -160,11 +170,12 @@ def _covered(sector: Sector, radius_mm: float) -> float:
 def _base(profile: Profile, first: Sector, root_mm: float) -> tuple[float, Pose]:
     """Root length and pose: straight along the first line, so that joint 1 lies on its vertex.
 
-    The root is as long as asked, longer only where the profile starts with a longer straight.
+    The root is as long as asked, longer only where the profile starts with a longer straight or
+    the first cut needs the room.
     """
     heading = float(profile.heading[0])
     along = np.array([np.cos(heading), np.sin(heading)])
     lead = float((np.array(first.vertex) - profile.points[0]) @ along)
-    root = round(max(root_mm, lead), _F_DECIMALS)
+    root = round(max(root_mm, lead, 0.5 * first.openF_mm + WRAP_MM), _F_DECIMALS)
     x, y = np.array(first.vertex) - root * along
     return root, Pose(float(x), float(y), float(np.degrees(heading)))

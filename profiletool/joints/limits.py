@@ -60,12 +60,18 @@ def _sector_shortfalls(number: int, sector: Sector, rules: Rules, free_count: bo
     if sector.missing_mm > 0.0:
         reasons.append(
             f"{place}: its cut of {sector.openF_mm:g} mm lacks {2.0 * sector.missing_mm:.1f} mm "
-            "of room; the profile turns too fast here for this tube, leave it out with --from or --to"
+            "of room; the profile turns too fast here for this tube: leave it out with --from "
+            "or --to"
         )
-    if sector.deviation_mm > rules.tolerance_mm and free_count:
+    if free_count and sector.deviation_mm > rules.tolerance_mm:
         reasons.append(
             f"{place}: the polygon is {sector.deviation_mm:.1f} mm off the profile, more than "
             f"the tolerance of {rules.tolerance_mm:g} mm"
+        )
+    elif free_count and sector.inward_mm > rules.interference_mm:
+        reasons.append(
+            f"{place}: the polygon runs {sector.inward_mm:.1f} mm into the object, more than "
+            f"{rules.interference_mm:g} mm"
         )
     return reasons
 

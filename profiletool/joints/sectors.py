@@ -54,6 +54,8 @@ class Rules:
         Least wrapped length between two windows.
     tolerance_mm : float
         How far the polygon may lie off the profile.
+    interference_mm : float
+        How deep it may run into the object.
     """
 
     radius_mm: float
@@ -61,6 +63,7 @@ class Rules:
     theta_most_rad: FloatArray
     wrap_mm: float
     tolerance_mm: float
+    interference_mm: float
 
 
 @dataclass(frozen=True)
@@ -78,6 +81,8 @@ class Sector:
     openF_mm : float
     deviation_mm : float
         Largest distance of the polygon from the profile.
+    inward_mm : float
+        Deepest place of the polygon inside the object.
     excess_turn_rad, missing_mm : float
         What is beyond the reach of one joint: turn, and room for its cut. Zero where it fits.
     """
@@ -89,6 +94,7 @@ class Sector:
     turn_rad: float
     openF_mm: float
     deviation_mm: float
+    inward_mm: float
     excess_turn_rad: float
     missing_mm: float
 
@@ -102,14 +108,16 @@ class _Pieces:
     openF: FloatArray
     vertex: FloatArray
     deviation: FloatArray
+    inward: FloatArray
     excess_turn: FloatArray
     missing_mm: FloatArray
     blocked: BoolArray
 
-    @property
-    def cost(self) -> FloatArray:
+    def cost(self, rules: Rules) -> FloatArray:
+        """Distance off the profile, and what breaks the rules in equivalents of it, mm."""
+        off = np.maximum(self.deviation, self.inward * (rules.tolerance_mm / rules.interference_mm))
         return (
-            self.deviation
+            off
             + _PER_RAD_MM * self.excess_turn
             + _PER_MM * self.missing_mm
             + _BLOCKED_MM * self.blocked
@@ -138,7 +146,7 @@ def discretise(profile: Profile, rules: Rules, count: int | None = None) -> tupl
     pieces = [_pieces(profile, grid, i, rules) for i in range(len(grid) - 1)]
     cost = np.full((len(grid), len(grid)), np.inf)
     for i, piece in enumerate(pieces):
-        cost[i, i + 1 :] = piece.cost
+        cost[i, i + 1 :] = piece.cost(rules)
     if count is None and _straight_deviation(profile) <= rules.tolerance_mm:
         return ()
     path = _best_path(cost, rules.tolerance_mm, count)
@@ -171,38 +179,46 @@ def _pieces(profile: Profile, grid: IntArray, i: int, rules: Rules) -> _Pieces:
     """Judge the joints between break point i and every later one."""
     here, later = grid[i], grid[i + 1 :]
     turn = profile.sign * (profile.heading[later] - profile.heading[here])
-    stretch = profile.s[later] - profile.s[here]
-    centre, spread = _centred(profile, here, later, turn)
-    openF, excess = _cuts(0.5 * np.minimum(spread, stretch), np.abs(turn), rules)
+    centre, bend = _centred(profile, here, later, turn, 0.4 * rules.radius_mm)
+    # As in the paper's own drawing, half of a bend is cut and half stays wrapped.
+    openF, excess = _cuts(0.5 * bend, np.abs(turn), rules)
     opened = openF + facing_stretch(turn, rules.radius_mm)
-    room = np.minimum(centre - profile.s[here], profile.s[later] - centre)
-    missing = np.maximum(0.5 * (opened + rules.wrap_mm) - room, 0.0)
+    # Beyond the profile's ends the tube goes on: its root, and its closed end.
+    before = centre - profile.s[here] if here > 0 else np.inf
+    after = np.where(later < len(profile.s) - 1, profile.s[later] - centre, np.inf)
+    missing = np.maximum(0.5 * (opened + rules.wrap_mm) - np.minimum(before, after), 0.0)
     vertex, ahead, behind = _vertices(profile, here, later)
     # Lines that meet behind a break point leave no sector to bend between them.
     blocked = (np.abs(turn) < _STRAIGHT_RAD) | ~(ahead >= 0.0) | ~(behind >= 0.0)
     radius = np.where(turn < 0.0, opened / np.maximum(-turn, _STRAIGHT_RAD), 0.0)
-    deviation = _deviation(profile, grid[i:], np.where(blocked[:, None], 0.0, vertex), radius)
-    return _Pieces(turn, centre, openF, vertex, deviation, excess, missing, blocked)
+    vertex = np.where(blocked[:, None], 0.0, vertex)
+    deviation, inward = _deviation(profile, grid[i:], vertex, radius)
+    return _Pieces(turn, centre, openF, vertex, deviation, inward, excess, missing, blocked)
 
 
 def _centred(
-    profile: Profile, here: int, later: IntArray, turn: FloatArray
+    profile: Profile, here: int, later: IntArray, turn: FloatArray, window: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Arc length at which the curvature is centred, and the length of an even arc as spread out.
+    """Arc length at which the curvature is centred, and the length that carries the turn.
 
-    An arc of length L has its curvature spread with a variance of L² / 12 about its middle.
+    The latter is turn² / integral of curvature²: the whole length of an even arc, only the bend's
+    where straights adjoin it.
     """
-    middles = 0.5 * (profile.s[1:] + profile.s[:-1])
     turns = profile.sign * np.diff(profile.heading)
-    first, second = (np.concatenate([[0.0], np.cumsum(middles**power * turns)]) for power in (1, 2))
+    middles = 0.5 * (profile.s[1:] + profile.s[:-1])
+    # Curvature over a window: squared point by point it would count the noise.
+    ends = np.clip(np.add.outer([-0.5, 0.5], middles / window) * window, 0.0, profile.s[-1])
+    turned = np.diff(np.interp(ends, profile.s, profile.heading), axis=0)[0]
+    square = (turned / (ends[1] - ends[0])) ** 2 * np.diff(profile.s)
+    moment, energy = (
+        np.concatenate([[0.0], np.cumsum(part)]) for part in (middles * turns, square)
+    )
     with np.errstate(divide="ignore", invalid="ignore"):
-        centre = (first[later] - first[here]) / turn
-        variance = (second[later] - second[here]) / turn - centre**2
-    # Where turns of both signs cancel, the moments say nothing: take the middle, all of it.
+        centre = (moment[later] - moment[here]) / turn
+        bend = turn**2 / (energy[later] - energy[here])
+    # Where turns of both signs cancel, the moment says nothing: take the middle.
     inside = (centre > profile.s[here]) & (centre < profile.s[later])
-    middle = 0.5 * (profile.s[here] + profile.s[later])
-    spread = np.sqrt(12.0 * np.maximum(np.where(inside, variance, np.inf), 0.0))
-    return np.where(inside, centre, middle), spread
+    return np.where(inside, centre, 0.5 * (profile.s[here] + profile.s[later])), np.nan_to_num(bend)
 
 
 def _cuts(measured: FloatArray, bend: FloatArray, rules: Rules) -> tuple[FloatArray, FloatArray]:
@@ -235,8 +251,8 @@ def _vertices(
 
 def _deviation(
     profile: Profile, indices: IntArray, vertex: FloatArray, radius: FloatArray
-) -> FloatArray:
-    """Largest distance between profile and polygon for the pieces from indices[0] on: (J,).
+) -> tuple[FloatArray, FloatArray]:
+    """How far the polygons from indices[0] on lie off the profile, and inside the object: (J,).
 
     Toward the object the polygon has a vertex. Away from it the hinge is on the far side and the
     object-facing line runs through the joint as an arc, of the given radius.
@@ -247,19 +263,24 @@ def _deviation(
     away = points - vertex[:, None, :]
     on_first = away @ first
     on_last = np.einsum("jmc,jc->jm", away, last)
-    before = on_first + on_last < 0.0
-    to_line = np.where(before, _cross(first, away), _cross(last[:, None, :], away))
+    # Positive where the polygon passes outside the object.
+    to_line = profile.sign * np.where(
+        on_first + on_last < 0.0, _cross(first, away), _cross(last[:, None, :], away)
+    )
     half = 0.5 * (profile.heading[indices[1:]] - profile.heading[indices[0]])
     tangent = radius * np.abs(np.tan(half))
     bisector = _direction(profile.heading[indices[0]] + half + np.pi / 2.0)
     centre = vertex + (np.sign(half) * radius / np.cos(half))[:, None] * bisector
     to_arc = np.hypot(*np.moveaxis(points - centre[:, None, :], -1, 0)) - radius[:, None]
     on_arc = (on_first > -tangent[:, None]) & (on_last < tangent[:, None])
-    off: FloatArray = np.abs(np.where(on_arc, to_arc, to_line))
-    inside = np.tri(len(last), len(points), 1, dtype=bool)
-    worst = np.max(off, axis=1, where=inside, initial=0.0)
-    gap = np.min(np.hypot(away[..., 0], away[..., 1]), axis=1, where=inside, initial=np.inf)
-    return np.asarray(np.maximum(worst, np.where(radius > 0.0, 0.0, gap)))
+    outside = np.where(on_arc, to_arc, to_line)
+    within = np.tri(len(last), len(points), 1, dtype=bool)
+    outward, inward = (
+        np.max(off, axis=1, where=within, initial=0.0) for off in (outside, -outside)
+    )
+    gap = np.min(np.hypot(away[..., 0], away[..., 1]), axis=1, where=within, initial=np.inf)
+    outward = np.maximum(outward, np.where(radius > 0.0, 0.0, gap))
+    return np.maximum(outward, inward), inward
 
 
 def _best_path(cost: FloatArray, tolerance: float, count: int | None) -> list[int]:
@@ -301,6 +322,7 @@ def _sector(profile: Profile, grid: IntArray, piece: _Pieces, i: int, j: int) ->
         turn_rad=float(piece.turn[k]),
         openF_mm=float(piece.openF[k]),
         deviation_mm=float(piece.deviation[k]),
+        inward_mm=float(piece.inward[k]),
         excess_turn_rad=float(piece.excess_turn[k]),
         missing_mm=float(piece.missing_mm[k]),
     )

@@ -15,7 +15,7 @@ from profiletool.profile.side import Stretch, side_of
 from profiletool.records import FloatArray, Profile, Side
 
 STEP_MM = 0.1  # spacing of a profile's points
-_LEAST_WIDTH_MM = 1.0  # half a mesh of the gauze: shorter features are nothing to a tube
+_LEAST_WINDOW = 0.2  # of the tube's radius: what is shorter is nothing to a tube
 _UNDERCUT = np.sin(np.radians(20.0))  # normals steeper down than this face the base
 _STRAIGHT_DOWN = np.cos(np.radians(45.0))
 _BRIDGED_MM = 0.1  # a gap that counts as bridged, where noise does not ask for more
@@ -76,8 +76,8 @@ def profile_of_line(points: FloatArray, reach: Reach) -> Profile:
 
 def _window(reach: Reach) -> float:
     """Half-width over which headings are taken, mm."""
-    width = max(smoothing_width(reach.noise_mm, reach.spacing_mm), _LEAST_WIDTH_MM)
-    return min(width, reach.radius_mm)
+    width = smoothing_width(reach.noise_mm, reach.spacing_mm)
+    return min(max(width, _LEAST_WINDOW * reach.radius_mm), reach.radius_mm)
 
 
 def _profile(stretch: Stretch, reach: Reach, outline: FloatArray | None) -> Profile:
@@ -85,6 +85,7 @@ def _profile(stretch: Stretch, reach: Reach, outline: FloatArray | None) -> Prof
     sign = 1.0 if reach.side == "left" else -1.0
     curvature = sign * whole.curvature
     first, last = np.searchsorted(whole.s, [stretch.start, stretch.end - 0.5 * STEP_MM])
+    last = min(last, len(whole.s) - 1)  # smoothing takes a little off a corner's length
     if outline is not None:
         side = slice(int(first), int(last) + 1)
         last = first + _above_base(whole, side, curvature, reach)
@@ -97,10 +98,13 @@ def _profile(stretch: Stretch, reach: Reach, outline: FloatArray | None) -> Prof
     shares = np.array([reach.start_pct, reach.end_pct]) / 100.0
     low, high = first + np.rint(shares * (last - first)).astype(int)
     kept = slice(int(low), int(high) + 1)
+    # Level at the top is pi on the left side and 0 on the right: count from the far side of that.
+    least = 0.0 if reach.side == "left" else -np.pi
+    turns = np.floor((whole.heading[low] - least) / (2.0 * np.pi))
     return Profile(
         points=whole.points[kept],
         s=whole.s[kept] - whole.s[low],
-        heading=whole.heading[kept],
+        heading=whole.heading[kept] - 2.0 * np.pi * turns,
         curvature=curvature[kept],
         bridged=np.zeros(high + 1 - low, dtype=bool),
         side=reach.side,

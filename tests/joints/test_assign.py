@@ -28,7 +28,7 @@ CIRCLE = 30.0 * np.column_stack([np.cos(T), np.sin(T)])
 
 
 def sector(centre: float, turn_deg: float, openF: float, vertex: tuple[float, float]) -> Sector:
-    return Sector(0.0, centre, 0.0, vertex, np.radians(turn_deg), openF, 0.0, 0.0, 0.0)
+    return Sector(0.0, centre, 0.0, vertex, np.radians(turn_deg), openF, 0.0, 0.0, 0.0, 0.0)
 
 
 @pytest.fixture(scope="module")

@@ -19,6 +19,7 @@ RULES = Rules(
     theta_most_rad=np.radians([33.0, 42.0, 51.0, 59.0, 68.0]),
     wrap_mm=2.0,
     tolerance_mm=1.0,
+    interference_mm=0.3,
 )
 
 
@@ -142,6 +143,7 @@ def test_scales_with_the_object_and_the_tube(factor: float) -> None:
         openF_mm=RULES.openF_mm * factor,
         wrap_mm=RULES.wrap_mm * factor,
         tolerance_mm=RULES.tolerance_mm * factor,
+        interference_mm=RULES.interference_mm * factor,
     )
     np.testing.assert_allclose(
         geometry(discretise(larger, rules)),

@@ -24,6 +24,7 @@ def test_a_circle_to_45_degrees_under() -> None:
 def test_convex_counts_positive_on_both_sides() -> None:
     right = profile_of_object(CIRCLE, Reach("right", 10.0))
     np.testing.assert_allclose(right.curvature, 1 / 30, rtol=0.01)
+    assert np.degrees(right.heading[0]) == pytest.approx(0.0, abs=0.1)
     assert right.sign * (right.heading[-1] - right.heading[0]) > 0.0
 
 
@@ -39,7 +40,7 @@ def test_from_and_to_are_shares_of_the_arc_length(start: float, end: float) -> N
 def test_the_corner_to_the_base_is_left_out() -> None:
     profile = profile_of_object(BOX, Reach("left", 10.0))
     assert np.degrees(profile.heading[-1]) == pytest.approx(270.0, abs=1.0)
-    assert 0.0 < profile.points[-1, 1] < 3.0
+    assert 0.0 < profile.points[-1, 1] < 5.0
 
 
 def test_the_cap_of_a_lamp_ends_at_its_rim() -> None:
@@ -48,7 +49,7 @@ def test_the_cap_of_a_lamp_ends_at_its_rim() -> None:
     outline = np.array(half + [[-x, y] for x, y in half[-2::-1]], dtype=float)
     end = profile_of_object(outline, Reach("right", 10.0)).points[-1]
     assert end[0] == pytest.approx(13.0, abs=0.1)
-    assert 15.0 < end[1] < 18.5
+    assert 15.0 < end[1] < 19.5
 
 
 def test_a_bridged_groove_is_reported() -> None:
