@@ -1,0 +1,77 @@
+"""The overlay against golden pictures, compared as pictures."""
+
+from __future__ import annotations
+
+import io
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from profiletool import pipeline
+from profiletool.image.scale import ScaleRequest
+from profiletool.report.overlay import Scene, backdrop_of, draw_overlay
+
+GOLDEN = Path(__file__).parents[1] / "golden"
+WIDTH_PX = 700
+BLOCK_PX = 7
+
+
+def scene_of(file: Path) -> Scene:
+    caught: list[Scene] = []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(pipeline, "draw_overlay", lambda scene: caught.append(scene) or b"")
+        pipeline.run(pipeline.Request(file, ScaleRequest()), lambda line: None)
+    return caught[0]
+
+
+def reduced(png: bytes | Path) -> Image.Image:
+    source = png if isinstance(png, Path) else io.BytesIO(png)
+    with Image.open(source) as image:
+        height = round(image.height * WIDTH_PX / image.width)
+        return image.convert("RGB").resize((WIDTH_PX, height), Image.Resampling.BOX)
+
+
+def worst_block(a: Image.Image, b: Image.Image) -> float:
+    """Largest difference between the mean greys of blocks: small shifts of thin lines show."""
+    if a.size != b.size:
+        return 255.0
+    off = np.abs(np.asarray(a, float) - np.asarray(b, float)).mean(axis=2)
+    h, w = (n // BLOCK_PX * BLOCK_PX for n in off.shape)
+    blocks = off[:h, :w].reshape(h // BLOCK_PX, BLOCK_PX, w // BLOCK_PX, BLOCK_PX)
+    return float(blocks.mean(axis=(1, 3)).max())
+
+
+@pytest.fixture(scope="module")
+def bulb(samples: Path) -> Scene:
+    return scene_of(samples / "bulb.png")
+
+
+def check(name: str, png: bytes) -> None:
+    golden = GOLDEN / name
+    if os.environ.get("PROFILETOOL_REGENERATE") == "1":
+        reduced(png).save(golden, lossless=True)
+    assert worst_block(reduced(png), reduced(golden)) < 16.0
+
+
+def test_bulb(bulb: Scene) -> None:
+    check("overlay_bulb.webp", draw_overlay(bulb))
+
+
+def test_drawn_profile(samples: Path) -> None:
+    check("overlay_finger_rest.webp", draw_overlay(scene_of(samples / "finger_rest.csv")))
+
+
+def test_a_tube_a_millimetre_off_is_seen(bulb: Scene) -> None:
+    shifted = replace(bulb, bent=replace(bulb.bent, facing=bulb.bent.facing + 1.0))
+    assert worst_block(reduced(draw_overlay(bulb)), reduced(draw_overlay(shifted))) > 16.0
+
+
+def test_the_picture_lies_in_the_object_frame() -> None:
+    rgb = np.zeros((40, 20, 3), np.uint8)
+    backdrop = backdrop_of(rgb, 0.5, (9.5, 4.5))
+    assert backdrop.extent == (-5.0, 5.0, -17.5, 2.5)
+    assert backdrop_of(np.zeros((4000, 2000, 3), np.uint8), 0.5, (0.0, 0.0)).rgb.shape[0] <= 1400
