@@ -8,15 +8,16 @@ from numpy.typing import NDArray
 from scipy.signal import savgol_filter
 
 from profiletool.image.ground import BoolImage
-from profiletool.image.region import largest_filled
+from profiletool.image.masks import largest_filled
 from profiletool.records import FloatArray
 
 _QUIET_PX = 0.06  # noise below this is left alone
 _LONGEST_WINDOW = 25
+_SHORTEST_PX = 60  # along a shorter contour, noise and corners cannot be told apart
 
 
 def largest_region(field: NDArray[np.float32]) -> BoolImage:
-    """The largest region above one half of an (H, W) field, its holes filled."""
+    """Find the largest region above one half of an (H, W) field, its holes filled."""
     return largest_filled(field > 0.5)
 
 
@@ -46,7 +47,8 @@ def outline(field: NDArray[np.float32], mask: BoolImage) -> FloatArray:
     lines = [np.asarray(line, np.float64) for line in generator.lines(0.5)]
     line = max(lines, key=lambda points: abs(signed_area(points)))[:-1]
     line = line[(line != np.roll(line, 1, axis=0)).any(axis=1)]
-    return (line if signed_area(line) < 0 else line[::-1]) + (left - 1.0, top - 1.0)
+    origin = np.array([left - 1.0, top - 1.0])
+    return np.asarray(origin + (line if signed_area(line) < 0 else line[::-1]))
 
 
 def signed_area(polygon: FloatArray) -> float:
@@ -65,7 +67,7 @@ def resampled(polygon: FloatArray, step: float) -> FloatArray:
 
 
 def position_noise(polygon: FloatArray) -> float:
-    """Standard deviation of a closed polygon's position across itself, in pixels.
+    """Measure the standard deviation of a polygon's position across itself, in pixels.
 
     Third differences over two pixels see neither place, slope nor curvature; their median
     overlooks corners.
@@ -100,8 +102,8 @@ def smoothed(polygon: FloatArray) -> tuple[FloatArray, float]:
     """
     noise = position_noise(polygon)
     points = resampled(polygon, 0.5)
-    window = min(2 * round(3 + 25 * noise) + 1, _LONGEST_WINDOW, (len(points) // 8) * 2 - 1)
-    if noise < _QUIET_PX or window < 5:
+    window = min(2 * round(3 + 25 * noise) + 1, _LONGEST_WINDOW)
+    if noise < _QUIET_PX or len(points) < 2 * _SHORTEST_PX:
         return polygon, noise
     # Cubic: keeps slope and curvature, so that the outline does not shrink.
     calm = savgol_filter(points, window, 3, axis=0, mode="wrap")

@@ -15,7 +15,7 @@ FloatImage = NDArray[np.float32]
 BoolImage = NDArray[np.bool_]
 
 _FRAME_SHARE = 0.04  # width of the border that is looked at, of the shorter side
-_SAMPLES = 8_000
+_SAMPLES = 6_000
 _FLOOR_LAB = 1.5  # below this, colour differences are compression and rounding, not objects
 _TUKEY = 4.0
 _DEGREE = 4
@@ -35,14 +35,14 @@ class Ground:
         Difference to it in units of its own scatter.
     noise : float
         The distance that the ground itself hardly exceeds.
-    plain_share : float
-        Part of the border that the surface explains.
+    scatter_lab : float
+        Root mean square of the border's deviation from the surface, Lab units.
     """
 
     surface: FloatImage
     distance: FloatImage
     noise: float
-    plain_share: float
+    scatter_lab: float
 
 
 def to_lab(rgb: NDArray[np.uint8]) -> FloatImage:
@@ -67,7 +67,9 @@ def fit_ground(lab: FloatImage, usable: BoolImage) -> Ground:
         border = _sampled(usable)
     colours = lab[border].astype(np.float64)
     design = _basis(border, lab.shape)
-    first, weights = _border_fit(design[:, :_BORDER_TERMS], colours)
+    first, weights = _border_fit(
+        design[:, :_BORDER_TERMS], colours, _nearest_side(border, lab.shape)
+    )
     everywhere = tuple(np.concatenate(pair) for pair in zip(border, _sampled(usable), strict=True))
     coefficients = _grown_fit(
         _basis(everywhere, lab.shape), lab[everywhere].astype(np.float64), first, len(border[0])
@@ -83,7 +85,7 @@ def fit_ground(lab: FloatImage, usable: BoolImage) -> Ground:
         surface=surface,
         distance=distance,
         noise=float(np.quantile(at_border, 0.995)),
-        plain_share=float(inlying.mean()),
+        scatter_lab=float(np.sqrt(np.trace(scatter))),
     )
 
 
@@ -92,6 +94,12 @@ def _frame(shape: tuple[int, ...]) -> BoolImage:
     frame = np.ones(shape, bool)
     frame[width:-width, width:-width] = False
     return frame
+
+
+def _nearest_side(index: Sequence[NDArray[np.intp]], shape: tuple[int, ...]) -> NDArray[np.intp]:
+    rows, columns = index
+    depths = (rows, shape[0] - 1 - rows, columns, shape[1] - 1 - columns)
+    return np.asarray(np.argmin(np.stack(depths), axis=0))
 
 
 def _sampled(mask: BoolImage) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
@@ -111,7 +119,7 @@ def _basis(index: Sequence[NDArray[np.intp]], shape: tuple[int, ...]) -> FloatAr
 
 
 def _surface(coefficients: FloatArray, height: int, width: int) -> FloatImage:
-    """The fitted polynomial at every pixel, as products of its powers along x and y."""
+    """Evaluate the fitted polynomial at every pixel, as products of its powers along x and y."""
     table = np.zeros((_DEGREE + 1, _DEGREE + 1, 3))
     for (p, q), row in zip(_POWERS, coefficients, strict=True):
         table[q, p] = row
@@ -121,16 +129,38 @@ def _surface(coefficients: FloatArray, height: int, width: int) -> FloatImage:
     return np.stack(planes, axis=2).astype(np.float32)
 
 
-def _border_fit(design: FloatArray, colours: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _border_fit(
+    design: FloatArray, colours: FloatArray, side: NDArray[np.intp]
+) -> tuple[FloatArray, FloatArray]:
+    """Fit the quadratic surface that explains most of the border; give each sample's weight too.
+
+    An object or a table's edge may take up a whole side of the frame, so the fit is also started
+    from any three of the four.
+    """
+    starts = [np.ones(len(side), bool)] + [side != left_out for left_out in range(4)]
+    fits = [_reweighted(design, colours, start) for start in starts if start.sum() > 50]
+
+    def badness(fit: tuple[FloatArray, FloatArray]) -> float:
+        misfit = np.linalg.norm(colours - design @ fit[0], axis=1)
+        return float(np.minimum(misfit, 3.0 * _FLOOR_LAB).mean())
+
+    return min(fits, key=badness)
+
+
+def _reweighted(
+    design: FloatArray, colours: FloatArray, start: BoolImage
+) -> tuple[FloatArray, FloatArray]:
     """Reweighted least squares: absolute deviations first, then Tukey's biweight."""
-    weights = np.ones(len(design))
-    coefficients = np.zeros((design.shape[1], colours.shape[1]))
+    weights = np.where(start, 1.0, 1e-6)
+    coefficients: FloatArray = np.zeros((design.shape[1], colours.shape[1]))
     for step in range(14):
         weighted = design * weights[:, None]
-        coefficients = np.linalg.solve(weighted.T @ design, weighted.T @ colours)
+        coefficients = np.asarray(
+            np.linalg.solve(weighted.T @ design, weighted.T @ colours), np.float64
+        )
         misfit = np.linalg.norm(colours - design @ coefficients, axis=1)
         if step < 8:
-            weights = 1.0 / np.maximum(misfit, 0.5)
+            weights = np.where(start, 1.0, 1e-6) / np.maximum(misfit, 0.5)
         else:
             weights = _biweight(misfit, _scale(misfit))
     return coefficients, weights
@@ -144,7 +174,7 @@ def _grown_fit(
     start[: len(first)] = first
     # Held to the border's surface where no ground is seen, as under a large object.
     stiffness = 1e-3 * len(design) * np.eye(design.shape[1])
-    coefficients = start
+    coefficients: FloatArray = start
     scale = _scale(np.linalg.norm(colours - design @ start, axis=1)[:at_border])
     for _ in range(10):
         misfit = np.linalg.norm(colours - design @ coefficients, axis=1)

@@ -144,10 +144,10 @@ def _channels(path: Path, image: Image.Image) -> tuple[NDArray[np.uint8], NDArra
     if image.mode == "I" or image.mode.startswith("I;16"):
         return _deep_grey(path, image)
     if not image.has_transparency_data:
-        return np.array(image.convert("RGB")), None
+        # Only converted where need be: every copy of 64 megapixels counts.
+        return np.asarray(image if image.mode == "RGB" else image.convert("RGB")), None
     _shorten_deep_transparency(image)
-    with image.convert("RGBA") as converted:
-        rgba = np.asarray(converted)
+    rgba = np.asarray(image if image.mode == "RGBA" else image.convert("RGBA"))
     alpha = rgba[..., 3].copy()
     return rgba[..., :3].copy(), alpha if alpha.min() < 255 else None
 

@@ -29,9 +29,9 @@ def find_markers(picture: Picture) -> list[FloatArray]:
 
 
 def with_quiet_zone(corners: FloatArray) -> FloatArray:
-    """A marker's (4, 2) corners, moved out to take in the white paper round it."""
+    """Move a marker's (4, 2) corners out to take in the white paper round it."""
     middle = corners.mean(axis=0)
-    return middle + (corners - middle) * (1.0 + 2.0 * _QUIET_ZONE)
+    return np.asarray(middle + (corners - middle) * (1.0 + 2.0 * _QUIET_ZONE))
 
 
 def paint_mask(

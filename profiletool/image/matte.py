@@ -39,12 +39,12 @@ def _matte(
 ) -> FloatImage:
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * band + 1, 2 * band + 1))
     mask = region.view(np.uint8)
-    inner = cv2.erode(mask, disc, borderType=cv2.BORDER_REPLICATE)
-    outer = cv2.dilate(mask, disc, borderType=cv2.BORDER_REPLICATE)
+    inner = np.asarray(cv2.erode(mask, disc, borderType=cv2.BORDER_REPLICATE), np.uint8)
+    outer = np.asarray(cv2.dilate(mask, disc, borderType=cv2.BORDER_REPLICATE), np.uint8)
     colours = small.astype(np.float32)
     inside = _local_mean(colours, inner, _REACH_INSIDE)
     outside = _local_mean(colours, 1 - outer, _REACH_OUTSIDE)
-    prior = cv2.GaussianBlur(mask.astype(np.float32), (0, 0), 1.0)
+    prior = np.asarray(cv2.GaussianBlur(mask.astype(np.float32), (0, 0), 1.0), np.float32)
     height, width = fine.shape[:2]
     if fine.shape == small.shape:
         field = inner.astype(np.float32)
@@ -72,21 +72,21 @@ def _share(
     power = (step**2).sum(axis=1)
     share = ((seen - outside) * step).sum(axis=1) / np.maximum(power, 1e-3)
     trust = power**2 / (power**2 + _LEAST_CONTRAST**4)
-    return np.clip(trust * share + (1 - trust) * prior, 0, 1)
+    return np.asarray(np.clip(trust * share + (1 - trust) * prior, 0, 1), np.float32)
 
 
 def _local_mean(colours: FloatImage, mask: NDArray[np.uint8], reach: float) -> FloatImage:
     """Mean colour of the masked pixels nearby, carried on to where there are none."""
     weight = mask.astype(np.float32)[..., None]
     weighted = np.concatenate([colours * weight, weight], axis=2)
-    total = cv2.GaussianBlur(weighted, (0, 0), reach)
+    total = np.asarray(cv2.GaussianBlur(weighted, (0, 0), reach), np.float32)
     height, width = mask.shape
     for shrink, importance in ((4, 1e-3), (16, 1e-6)):
         size = max(2, width // shrink), max(2, height // shrink)
         coarse = cv2.GaussianBlur(
             cv2.resize(weighted, size, interpolation=cv2.INTER_AREA), (0, 0), 1
         )
-        total += np.float32(importance) * cv2.resize(coarse, (width, height))
+        total += np.asarray(importance * cv2.resize(coarse, (width, height)), np.float32)
     return np.asarray(total[..., :3] / np.maximum(total[..., 3:], 1e-12), np.float32)
 
 
@@ -96,6 +96,6 @@ def _sample(image: FloatImage, x: FloatImage, y: FloatImage) -> FloatImage:
     fold = 8192
     padding = -len(x) % fold
     grid = [np.pad(values, (0, padding)).reshape(-1, fold) for values in (x, y)]
-    values = cv2.remap(image, *grid, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    values = cv2.remap(image, grid[0], grid[1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
     flat = values.reshape(-1, *image.shape[2:])
     return np.asarray(flat[: len(x)], np.float32)

@@ -14,21 +14,18 @@ from profiletool.errors import NoObject
 from profiletool.image.contour import largest_region, outline, smoothed
 from profiletool.image.ground import BoolImage, FloatImage, fit_ground, to_lab
 from profiletool.image.marker import paint_mask, with_quiet_zone
+from profiletool.image.masks import edges_touched
 from profiletool.image.matte import edge_field
-from profiletool.image.region import (
-    choose_object,
-    edges_touched,
-    grabcut_region,
-    region_on_ground,
-)
+from profiletool.image.region import choose_object, grabcut_region, region_on_ground
 from profiletool.records import FloatArray, Picture, Silhouette
 
 _FINE_PIXELS = 6_000_000  # the contour is taken at no more than this
 _ROUGH_PIXELS = 400_000  # the object is told from the ground at no more than this
 _GRABCUT_PIXELS = 200_000
-_PLAIN_SHARE = 0.6  # of the border must follow one smooth surface
-_LARGEST_NOISE = 6.0
+_MOTTLED_LAB = 8.0  # a ground that scatters more than this may hide an object
 _BLUR_PX = 0.8
+_TRIM_PX = 2
+_SPECK_SHARE = 0.01
 
 
 def find_silhouette(picture: Picture, ignore: Sequence[FloatArray] = ()) -> Silhouette:
@@ -44,8 +41,8 @@ def find_silhouette(picture: Picture, ignore: Sequence[FloatArray] = ()) -> Silh
     Returns
     -------
     Silhouette
-        ``touches`` names the frame edges that the object runs into; a cut-out that is trimmed
-        on all four sides runs into none.
+        ``touches`` names the frame edges that the object runs into; a cut-out trimmed to
+        its own size, on three sides at least, runs into none.
 
     Raises
     ------
@@ -66,7 +63,7 @@ def find_silhouette(picture: Picture, ignore: Sequence[FloatArray] = ()) -> Silh
     if fine_step > 1:
         contour = (contour + 0.5) * fine_step - 0.5
         height, width = picture.rgb.shape[:2]
-        mask = largest_region(cv2.resize(field, (width, height)))
+        mask = largest_region(np.asarray(cv2.resize(field, (width, height)), np.float32))
     return Silhouette(contour, mask, method, noise * fine_step, touches)
 
 
@@ -75,11 +72,21 @@ def _informative(alpha: NDArray[np.uint8]) -> bool:
     share = float((alpha >= 128).mean())
     if share == 0.0:
         raise NoObject("the picture is transparent everywhere; export it with its content")
-    return share < 0.98
+    return bool(share < 0.98)
 
 
 def _trimmed(alpha: NDArray[np.uint8] | None) -> bool:
-    return alpha is not None and len(edges_touched(alpha > 0)) == 4
+    """Whether a cut-out's canvas is its own bounding box, so that meeting it means nothing."""
+    if alpha is None:
+        return False
+    rows, columns = np.flatnonzero(alpha.any(axis=1)), np.flatnonzero(alpha.any(axis=0))
+    margins = (
+        rows[0],
+        alpha.shape[0] - 1 - rows[-1],
+        columns[0],
+        alpha.shape[1] - 1 - columns[-1],
+    )
+    return sum(int(margin) <= _TRIM_PX for margin in margins) >= 3
 
 
 def _alpha_field(alpha: NDArray[np.uint8], step: int) -> FloatImage:
@@ -102,25 +109,38 @@ def _reduced(image: NDArray[np.uint8], step: float) -> NDArray[np.uint8]:
 def _photo_field(
     rgb: NDArray[np.uint8], polygons: list[FloatArray], fine_step: int
 ) -> tuple[str, FloatImage]:
-    """Method and soft field of a picture without a matte."""
+    """Give the method and the soft field of a picture without a matte."""
     step = max(1.0, math.sqrt(rgb[..., 0].size / _ROUGH_PIXELS))
     small = _reduced(rgb, step)
     ignored = paint_mask(polygons, small.shape[:2], step * fine_step)
-    lab = cv2.GaussianBlur(to_lab(small), (0, 0), _BLUR_PX)
+    lab = _softened_lab(small)
     ground = fit_ground(lab, ~ignored)
     ground = replace(ground, distance=np.where(ignored, np.float32(0), ground.distance))
-    if ground.plain_share > _PLAIN_SHARE and ground.noise < _LARGEST_NOISE:
-        method, region = "plain ground", region_on_ground(lab, ground)
-    else:
+    mottled = ground.scatter_lab > _MOTTLED_LAB
+    try:
+        region = region_on_ground(lab, ground)
+    except NoObject:
+        if not mottled:
+            raise
+        region = np.zeros(lab.shape[:2], bool)
+    method = "plain ground"
+    # On a plain ground the first look is the last word; on a mottled one a speck is not.
+    if mottled and region.mean() < _SPECK_SHARE:
         method, region = "grabcut", _by_grabcut(small, ground.distance, ignored)
     return method, edge_field(rgb, region, small)
+
+
+def _softened_lab(rgb: NDArray[np.uint8]) -> FloatImage:
+    return np.asarray(cv2.GaussianBlur(to_lab(rgb), (0, 0), _BLUR_PX), np.float32)
 
 
 def _by_grabcut(rgb: NDArray[np.uint8], distance: FloatImage, ignored: BoolImage) -> BoolImage:
     step = max(1.0, math.sqrt(distance.size / _GRABCUT_PIXELS))
     small = _reduced(rgb, step)
     height, width = small.shape[:2]
-    shrunk = cv2.resize(distance, (width, height), interpolation=cv2.INTER_AREA)
+    shrunk = np.asarray(
+        cv2.resize(distance, (width, height), interpolation=cv2.INTER_AREA), np.float32
+    )
     barred = cv2.resize(ignored.view(np.uint8), (width, height)) > 0
-    region = grabcut_region(small, shrunk, barred).astype(np.float32)
+    region = grabcut_region(small, _softened_lab(small), shrunk, barred).astype(np.float32)
     return np.asarray(cv2.resize(region, distance.shape[::-1]) > 0.5)

@@ -1,0 +1,52 @@
+"""Small operations on masks."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+
+from profiletool.image.ground import BoolImage
+
+
+def fill_holes(mask: BoolImage) -> BoolImage:
+    """Fill what the region encloses; a gap open to the frame is no hole."""
+    filled = np.zeros(mask.shape, np.uint8)
+    outlines, _ = cv2.findContours(
+        np.ascontiguousarray(mask).view(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE
+    )
+    cv2.drawContours(filled, outlines, -1, 1, cv2.FILLED)
+    return filled.view(bool)
+
+
+def largest_filled(mask: BoolImage) -> BoolImage:
+    """Give the largest region of a mask, its holes filled; empty where there is none."""
+    outlines, _ = cv2.findContours(
+        np.ascontiguousarray(mask).view(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE
+    )
+    largest = np.zeros(mask.shape, np.uint8)
+    if outlines:
+        cv2.drawContours(largest, [max(outlines, key=cv2.contourArea)], -1, 1, cv2.FILLED)
+    return largest.view(bool)
+
+
+def connected_to(seeds: BoolImage, mask: BoolImage) -> BoolImage:
+    """Keep the regions of a mask that hold a seed."""
+    count, labels = cv2.connectedComponents(mask.view(np.uint8), connectivity=4)
+    kept = np.zeros(count, bool)
+    kept[labels[seeds & mask]] = True
+    return np.asarray(kept[labels])
+
+
+def edges_touched(mask: BoolImage) -> frozenset[str]:
+    """Name the frame edges that a region reaches."""
+    sides = {"top": mask[0], "bottom": mask[-1], "left": mask[:, 0], "right": mask[:, -1]}
+    return frozenset(name for name, side in sides.items() if side.any())
+
+
+def window_of(region: BoolImage, margin: int) -> tuple[slice, slice]:
+    """Rows and columns of a region with a margin round it."""
+    rows, columns = np.flatnonzero(region.any(axis=1)), np.flatnonzero(region.any(axis=0))
+    return (
+        slice(max(rows[0] - margin, 0), rows[-1] + margin + 1),
+        slice(max(columns[0] - margin, 0), columns[-1] + margin + 1),
+    )
