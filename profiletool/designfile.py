@@ -7,8 +7,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from pydantic import TypeAdapter, ValidationError
-
 from profiletool.errors import UnreadableInput
 from profiletool.records import Design
 
@@ -31,6 +29,8 @@ def from_json(text: str | bytes, file: str) -> Design:
     UnreadableInput
         Naming the file and the first field that is missing or makes no sense.
     """
+    from pydantic import TypeAdapter, ValidationError  # heavy, and writing does not need it
+
     try:
         tree = json.loads(text)
     except (ValueError, RecursionError) as error:
