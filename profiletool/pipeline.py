@@ -238,6 +238,8 @@ def _design(
     if subject.silhouette is not None and subject.silhouette.touches:
         edges = ", ".join(sorted(subject.silhouette.touches))
         notes.append(f"the object runs out of the frame ({edges}); the profile ends there")
+    if subject.silhouette is not None and subject.silhouette.method == "grabcut":
+        notes.append("the silhouette is a guess on a busy ground: look at it in overlay.png")
     if seam.crossed:
         numbers = ", ".join(str(number) for number in seam.crossed)
         notes.append(f"the weld line crosses the cut of joint {numbers}: weld it again there")

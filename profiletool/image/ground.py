@@ -18,9 +18,8 @@ _FRAME_SHARE = 0.04  # width of the border that is looked at, of the shorter sid
 _SAMPLES = 6_000
 _FLOOR_LAB = 1.5  # below this, colour differences are compression and rounding, not objects
 _TUKEY = 4.0
-_DEGREE = 4
+_DEGREE = 2  # the border alone bears no more, and a freer surface would take in a pale object
 _POWERS = [(n - k, k) for n in range(_DEGREE + 1) for k in range(n + 1)]
-_BORDER_TERMS = 6  # a quadratic surface; the whole picture bears a quartic one
 
 
 @dataclass(frozen=True)
@@ -52,7 +51,7 @@ def to_lab(rgb: NDArray[np.uint8]) -> FloatImage:
 
 
 def fit_ground(lab: FloatImage, usable: BoolImage) -> Ground:
-    """Fit a smooth colour surface to the border, then to all that continues it inward.
+    """Fit a smooth colour surface to the border.
 
     Parameters
     ----------
@@ -63,17 +62,11 @@ def fit_ground(lab: FloatImage, usable: BoolImage) -> Ground:
     """
     height, width = lab.shape[:2]
     border = _sampled(usable & _frame(usable.shape))
-    if len(border[0]) < 2 * _BORDER_TERMS:
+    if len(border[0]) < 2 * len(_POWERS):
         border = _sampled(usable)
     colours = lab[border].astype(np.float64)
     design = _basis(border, lab.shape)
-    first, weights = _border_fit(
-        design[:, :_BORDER_TERMS], colours, _nearest_side(border, lab.shape)
-    )
-    everywhere = tuple(np.concatenate(pair) for pair in zip(border, _sampled(usable), strict=True))
-    coefficients = _grown_fit(
-        _basis(everywhere, lab.shape), lab[everywhere].astype(np.float64), first, len(border[0])
-    )
+    coefficients, weights = _border_fit(design, colours, _nearest_side(border, lab.shape))
     surface = _surface(coefficients, height, width)
     residuals = colours - design @ coefficients
     scatter = (residuals * weights[:, None]).T @ residuals / weights.sum()
@@ -113,7 +106,7 @@ def _unit(index: NDArray[np.intp], size: int) -> FloatArray:
 
 
 def _basis(index: Sequence[NDArray[np.intp]], shape: tuple[int, ...]) -> FloatArray:
-    """Monomials to the fourth degree at rows and columns; the quadratic ones come first."""
+    """Monomials to the second degree at rows and columns."""
     v, u = _unit(index[0], shape[0]), _unit(index[1], shape[1])
     return np.stack([u**p * v**q for p, q in _POWERS], axis=-1)
 
@@ -164,24 +157,6 @@ def _reweighted(
         else:
             weights = _biweight(misfit, _scale(misfit))
     return coefficients, weights
-
-
-def _grown_fit(
-    design: FloatArray, colours: FloatArray, first: FloatArray, at_border: int
-) -> FloatArray:
-    """Follow the light inward from the border's surface: a lamp's spot is seen only there."""
-    start = np.zeros((design.shape[1], colours.shape[1]))
-    start[: len(first)] = first
-    # Held to the border's surface where no ground is seen, as under a large object.
-    stiffness = 1e-3 * len(design) * np.eye(design.shape[1])
-    coefficients: FloatArray = start
-    scale = _scale(np.linalg.norm(colours - design @ start, axis=1)[:at_border])
-    for _ in range(10):
-        misfit = np.linalg.norm(colours - design @ coefficients, axis=1)
-        weighted = design * _biweight(misfit, scale)[:, None]
-        right = weighted.T @ (colours - design @ start)
-        coefficients = start + np.linalg.solve(weighted.T @ design + stiffness, right)
-    return coefficients
 
 
 def _scale(misfit: FloatArray) -> float:

@@ -52,6 +52,7 @@ def without_shadow(region: BoolImage, lab: FloatImage, ground: Ground) -> BoolIm
     for level in _FLOOD_LEVELS:
         floodable = ~region | (shadow & (strength < level))
         candidates.append(_flooded(region, floodable))
+    candidates += _standing_out(region, ground.distance)
     area = region.sum()
     scored = [(firmness(c), c) for c in candidates if c.sum() > 0.4 * area]
     best = max(score for score, _ in scored)
@@ -60,6 +61,17 @@ def without_shadow(region: BoolImage, lab: FloatImage, ground: Ground) -> BoolIm
         region = next(c for score, c in scored if score > best - 0.04)
     refuse_faded(region, strength)
     return region
+
+
+def _standing_out(region: BoolImage, distance: FloatImage) -> list[BoolImage]:
+    """Split a region by Otsu's threshold: shadows, coloured ones too, lie nearer to the ground."""
+    inside = distance[region]
+    if inside.size == 0:
+        return []
+    unit = max(float(np.quantile(inside, 0.95)), 1e-6) / 255.0
+    grey = np.clip(inside / unit, 0.0, 255.0).astype(np.uint8).reshape(1, -1)
+    level, _ = cv2.threshold(grey, 0, 255, cv2.THRESH_BINARY | cv2.THRESH_OTSU)
+    return [largest_filled(region & (distance > level * unit))]
 
 
 def refuse_faded(region: BoolImage, strength: FloatImage) -> None:

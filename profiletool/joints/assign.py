@@ -20,7 +20,7 @@ TOWARD_DEG, AWAY_DEG = 270.0, 90.0  # alpha_center of a joint that bends toward 
 WRAP_MM = 2.0  # least wrapped length between two windows: one mesh
 END_WRAP_MM = 4.0  # least wrapped length at the closed end: the paper's mould leaves 4 mm there
 INTERFERENCE_MM = 0.3  # how deep a straight piece of tube may lie in the object as drawn
-NEAR_DEG = 3.0  # an angle of the table this much above the wanted one is near enough
+NEAR_DEG = 2.0  # an angle of the table this much above the wanted one is near enough
 _F_DECIMALS = 1
 
 

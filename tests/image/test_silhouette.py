@@ -113,13 +113,17 @@ def test_checks_of_one_hue_are_passed_over() -> None:
     assert iou(found_in(laid(cover, checks, (220, 40, 160))).mask, cover >= 0.5) > 0.98
 
 
-def test_ground_of_many_colours_goes_to_grabcut() -> None:
+@pytest.mark.parametrize(
+    ("colour", "cell", "method"),
+    [((240, 210, 40), 20, "plain ground"), ((40, 110, 110), 10, "grabcut")],
+)
+def test_ground_of_many_colours(colour: tuple[int, int, int], cell: int, method: str) -> None:
     paints = np.array([(30, 60, 200), (30, 170, 60), (20, 140, 150), (60, 60, 70)])
-    ground = paints[np.random.default_rng(3).integers(0, 4, (12, 16))]
-    ground = np.kron(ground, np.ones((20, 20, 1)))
+    cells = np.random.default_rng(3).integers(0, 4, (SHAPE[0] // cell, SHAPE[1] // cell))
+    ground = np.kron(paints[cells], np.ones((cell, cell, 1)))
     cover = disc(160, 120, 60)
-    found = found_in(laid(cover, ground, (240, 210, 40)))
-    assert found.method == "grabcut"
+    found = found_in(laid(cover, ground, colour))
+    assert found.method == method
     assert iou(found.mask, cover >= 0.5) > 0.95
 
 

@@ -103,7 +103,7 @@ def test_a_small_turn_takes_a_cut_whose_column_is_near(circle: Profile) -> None:
     lead, small = lay_out(circle, sectors, TABLE, MATERIAL).joints
     assert lead.openF_mm == 10.0
     assert small.openF_mm < 14.0
-    assert small.theta_formula_deg - 14.5 <= 3.0
+    assert small.theta_formula_deg - 14.5 <= 2.0
 
 
 def test_a_turn_beyond_reach_is_cut_back(circle: Profile) -> None:
