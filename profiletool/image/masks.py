@@ -7,6 +7,8 @@ import numpy as np
 
 from profiletool.image.ground import BoolImage
 
+_SPUR_SHARE = 0.006
+
 
 def fill_holes(mask: BoolImage) -> BoolImage:
     """Fill what the region encloses; a gap open to the frame is no hole."""
@@ -27,6 +29,23 @@ def largest_filled(mask: BoolImage) -> BoolImage:
     if outlines:
         cv2.drawContours(largest, [max(outlines, key=cv2.contourArea)], -1, 1, cv2.FILLED)
     return largest.view(bool)
+
+
+def without_spurs(mask: BoolImage) -> BoolImage:
+    """Cut off what sticks out of a region as a thin spur; corners stay.
+
+    A spur is narrower than about a hundredth of the region and reaches further out than any
+    corner's tip does beyond the disc that fits into it.
+    """
+    radius = round(_SPUR_SHARE * np.sqrt(mask.sum()))
+    if radius < 1:
+        return mask
+    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * radius + 1, 2 * radius + 1))
+    padded = np.pad(mask, radius, mode="edge").view(np.uint8)
+    opened = cv2.morphologyEx(padded, cv2.MORPH_OPEN, disc)[radius:-radius, radius:-radius] > 0
+    tips = mask & ~opened
+    reach = cv2.distanceTransform((~opened).view(np.uint8), cv2.DIST_L2, 3)
+    return np.asarray(mask & ~connected_to(tips & (reach > 0.7 * radius + 1.0), tips))
 
 
 def connected_to(seeds: BoolImage, mask: BoolImage) -> BoolImage:

@@ -14,7 +14,7 @@ from profiletool.errors import NoObject
 from profiletool.image.contour import largest_region, outline, smoothed
 from profiletool.image.ground import BoolImage, FloatImage, fit_ground, to_lab
 from profiletool.image.marker import paint_mask, with_quiet_zone
-from profiletool.image.masks import edges_touched
+from profiletool.image.masks import edges_touched, without_spurs
 from profiletool.image.matte import edge_field
 from profiletool.image.region import choose_object, grabcut_region, region_on_ground
 from profiletool.records import FloatArray, Picture, Silhouette
@@ -56,6 +56,8 @@ def find_silhouette(picture: Picture, ignore: Sequence[FloatArray] = ()) -> Silh
     else:
         method, field = _photo_field(_reduced(picture.rgb, fine_step), polygons, fine_step)
     mask = largest_region(field)
+    if method != "alpha matte":
+        mask = without_spurs(mask)
     contour, noise = smoothed(outline(field, mask))
     touches = edges_touched(mask)
     if method == "alpha matte" and _trimmed(picture.alpha):

@@ -15,6 +15,7 @@ from scipy import ndimage
 
 from profiletool.errors import NoObject
 from profiletool.image.load import load_picture
+from profiletool.image.masks import without_spurs
 from profiletool.image.silhouette import find_silhouette
 from profiletool.records import Picture, Silhouette
 
@@ -340,3 +341,12 @@ def test_twelve_megapixels_are_quick_and_exact(shared: Path, tmp_path: Path) -> 
     polygon = np.zeros(size[::-1], np.uint8)
     cv2.fillPoly(polygon, [np.round(found.contour_px).astype(np.int32)], 1)
     assert iou(polygon > 0, found.mask) > 0.998
+
+
+def test_a_thin_spur_is_cut_off_and_corners_stay() -> None:
+    square = np.zeros((240, 320), bool)
+    square[40:200, 80:240] = True
+    with_spur = square.copy()
+    with_spur[100:102, 240:252] = True
+    assert np.count_nonzero(without_spurs(with_spur) != square) <= 2  # of its 24 pixels
+    assert np.array_equal(without_spurs(square), square)
