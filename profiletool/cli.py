@@ -162,7 +162,7 @@ def design(
     """Design an actuator that mirrors the side of an object, and its cut template."""
     del method, verify, refine, config  # parsed for the contract; see their help
     with _exit_codes(debug):
-        from profiletool import output, pipeline
+        from profiletool import artifacts, output, pipeline
         from profiletool.image.scale import ScaleRequest
         from profiletool.records import Material
         from profiletool.report.text import joint_table
@@ -190,8 +190,9 @@ def design(
         )
         say = _silence if quiet else _say
         result = pipeline.run(request, say)
-        output.write_folder(folder, result.files, force)
-        text = result.files["design.json"].decode() if as_json else joint_table(result.design)
+        files = artifacts.files_of(result)
+        output.write_folder(folder, files, force)
+        text = files["design.json"].decode() if as_json else joint_table(result.design)
         typer.echo(text, nl=False)
         for warning in result.design.warnings:
             say(f"note: {warning}")
@@ -269,12 +270,14 @@ def template(
 ) -> None:
     """Draw the cut template of a design anew."""
     with _exit_codes(debug):
-        from profiletool import output, pipeline
+        from profiletool import artifacts, output
+        from profiletool.designfile import load_design, to_json
 
         folder = out or Path(f"{file.stem}_template")
         output.check_free(folder, force)
-        _, files = pipeline.template_files(file)
-        output.write_folder(folder, {**files, "design.json": file.read_bytes()}, force)
+        made = load_design(file)
+        files = {**artifacts.template_files(made), "design.json": to_json(made).encode()}
+        output.write_folder(folder, files, force)
         (_silence if quiet else _say)(f"written: {folder}")
 
 

@@ -1,4 +1,4 @@
-"""The one place that knows the order of the stages."""
+"""The one place that knows the order of the stages, from a picture to a design."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ import numpy as np
 
 from formula.errors import BadFormula, OutOfRange
 from formula.theta import Formula, load_formula
-from profiletool.designfile import load_design, to_json
 from profiletool.errors import NoObject, UnreadableInput, UsageError
 from profiletool.image.load import load_picture
 from profiletool.image.marker import find_markers
@@ -38,11 +37,6 @@ from profiletool.records import (
     Source,
     Tube,
 )
-from profiletool.report.files import mask_png, shape_csv
-from profiletool.report.overlay import Scene, backdrop_of, draw_overlay
-from profiletool.template.dxf import write_dxf
-from profiletool.template.layout import build_sheet
-from profiletool.template.svg import write_svg
 from profiletool.template.unroll import best_seam
 
 _WRONG_SCALE = {"height": {"top", "bottom"}, "width": {"left", "right"}}
@@ -77,11 +71,18 @@ class Subject:
 
 @dataclass(frozen=True)
 class Result:
-    """A design, the reasons why it is infeasible (none where it is feasible), and its files."""
+    """A design with what it was made from.
+
+    ``reasons`` say why it is infeasible; none where it is feasible. ``shape`` is the tube as the
+    formula bends it.
+    """
 
     design: Design
     reasons: tuple[str, ...]
-    files: dict[str, bytes]
+    subject: Subject
+    sectors: tuple[Sector, ...]
+    layout: Layout
+    shape: Shape
 
 
 def run(request: Request, say: Callable[[str], None]) -> Result:
@@ -118,19 +119,7 @@ def run(request: Request, say: Callable[[str], None]) -> Result:
     reasons = shortfalls(sectors, layout, rules, material, formula, request.joints is None)
     shape = deform(layout.bends(), layout.length_mm, material.radius_mm, layout.pose, profile.sign)
     design = _design(request, subject, formula, layout, shape, reasons)
-    return Result(design, reasons, _files(subject, sectors, design, layout, shape))
-
-
-def template_files(path: Path) -> tuple[Design, dict[str, bytes]]:
-    """Read a design.json and draw its cut template anew.
-
-    Raises
-    ------
-    UnreadableInput
-        When it holds no design.
-    """
-    design = load_design(path)
-    return design, _template(design)
+    return Result(design, reasons, subject, sectors, layout, shape)
 
 
 def read_formula(path: Path | None) -> Formula:
@@ -266,41 +255,3 @@ def _design(
         verified=False,
         warnings=tuple(notes),
     )
-
-
-def _files(
-    subject: Subject,
-    sectors: tuple[Sector, ...],
-    design: Design,
-    layout: Layout,
-    shape: Shape,
-) -> dict[str, bytes]:
-    files = {
-        "design.json": to_json(design).encode(),
-        **_template(design),
-        "shape.csv": shape_csv(subject.profile, shape),
-    }
-    if subject.silhouette is not None:
-        files["mask.png"] = mask_png(subject.silhouette.mask)
-    files["overlay.png"] = draw_overlay(_scene(subject, sectors, design, layout, shape))
-    return files
-
-
-def _scene(
-    subject: Subject,
-    sectors: tuple[Sector, ...],
-    design: Design,
-    layout: Layout,
-    shape: Shape,
-) -> Scene:
-    backdrop = None
-    if subject.picture is not None and subject.origin_px is not None:
-        backdrop = backdrop_of(subject.picture.rgb, subject.scale.mm_per_px, subject.origin_px)
-    radius = 0.5 * design.tube.outer_diameter_mm
-    straight = deform((), layout.length_mm, radius, layout.pose, subject.profile.sign)
-    return Scene(backdrop, subject.profile, sectors, design, layout.bends(), shape, straight)
-
-
-def _template(design: Design) -> dict[str, bytes]:
-    sheet = build_sheet(design)
-    return {"template.dxf": write_dxf(sheet), "template.svg": write_svg(sheet).encode()}

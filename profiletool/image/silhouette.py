@@ -65,7 +65,7 @@ def find_silhouette(picture: Picture, ignore: Sequence[FloatArray] = ()) -> Silh
     if fine_step > 1:
         contour = (contour + 0.5) * fine_step - 0.5
         height, width = picture.rgb.shape[:2]
-        mask = largest_region(np.asarray(cv2.resize(field, (width, height)), np.float32))
+        mask = np.asarray(cv2.resize(mask.view(np.uint8) * 255, (width, height)) > 127)
     return Silhouette(contour, mask, method, noise * fine_step, touches)
 
 

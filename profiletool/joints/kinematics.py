@@ -113,6 +113,7 @@ def misfit(shape: Shape, profile: Profile) -> Misfit:
     with its distance to the profile, but for what lies beyond the profile's ends.
     """
     line, target = shapely.LineString(shape.facing), shapely.LineString(profile.points)
+    shapely.prepare([line, target])
     to_line = shapely.distance(shapely.points(profile.points), line)
     points = shapely.points(shape.facing)
     beside = shapely.line_locate_point(target, points)

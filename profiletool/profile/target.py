@@ -53,9 +53,13 @@ def profile_of_object(outline: FloatArray, reach: Reach) -> Profile:
     """
     closed = reachable_outline(outline, reach.radius_mm, reach.clearance_mm)
     profile = _profile(side_of(closed, reach.side, 2.0 * _window(reach)), reach, outline)
-    gap = shapely.distance(shapely.points(profile.points), shapely.LinearRing(outline))
+    ring = shapely.LinearRing(outline)
+    shapely.prepare(ring)
+    gap = shapely.distance(shapely.points(profile.points), ring)
     # A smoothed corner stands off its outline too; only where the tube passes outside is a bridge.
-    outside = ~shapely.contains_xy(shapely.Polygon(outline).buffer(0.0), profile.points)
+    body = shapely.Polygon(outline).buffer(0.0)
+    shapely.prepare(body)
+    outside = ~shapely.contains_xy(body, profile.points)
     bridged = outside & (gap > reach.clearance_mm + max(_BRIDGED_MM, 2.0 * reach.noise_mm))
     return replace(profile, bridged=bridged)
 

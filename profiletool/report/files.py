@@ -16,7 +16,7 @@ from profiletool.records import FloatArray, Profile
 def mask_png(mask: NDArray[np.bool_]) -> bytes:
     """Encode a mask (H, W): white object on black."""
     buffer = io.BytesIO()
-    Image.fromarray(mask).save(buffer, "PNG")
+    Image.fromarray(mask).save(buffer, "PNG", compress_level=1)
     return buffer.getvalue()
 
 

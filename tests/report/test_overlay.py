@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from profiletool import pipeline
-from profiletool.image.scale import ScaleRequest
+from profiletool.artifacts import scene_of
+from profiletool.pipeline import Request, run
 from profiletool.report.overlay import Scene, backdrop_of, draw_overlay
 
 GOLDEN = Path(__file__).parents[1] / "golden"
@@ -20,12 +20,8 @@ WIDTH_PX = 700
 BLOCK_PX = 7
 
 
-def scene_of(file: Path) -> Scene:
-    caught: list[Scene] = []
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(pipeline, "draw_overlay", lambda scene: caught.append(scene) or b"")
-        pipeline.run(pipeline.Request(file, ScaleRequest()), lambda line: None)
-    return caught[0]
+def scene_from(file: Path) -> Scene:
+    return scene_of(run(Request(file), lambda line: None))
 
 
 def reduced(png: bytes | Path) -> Image.Image:
@@ -47,7 +43,7 @@ def worst_block(a: Image.Image, b: Image.Image) -> float:
 
 @pytest.fixture(scope="module")
 def bulb(samples: Path) -> Scene:
-    return scene_of(samples / "bulb.png")
+    return scene_from(samples / "bulb.png")
 
 
 def check(name: str, png: bytes) -> None:
@@ -62,7 +58,7 @@ def test_bulb(bulb: Scene) -> None:
 
 
 def test_drawn_profile(samples: Path) -> None:
-    check("overlay_finger_rest.webp", draw_overlay(scene_of(samples / "finger_rest.csv")))
+    check("overlay_finger_rest.webp", draw_overlay(scene_from(samples / "finger_rest.csv")))
 
 
 def test_a_tube_a_millimetre_off_is_seen(bulb: Scene) -> None:
