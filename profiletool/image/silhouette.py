@@ -21,7 +21,7 @@ from profiletool.records import FloatArray, Picture, Silhouette
 
 _FINE_PIXELS = 6_000_000  # the contour is taken at no more than this
 _ROUGH_PIXELS = 400_000  # the object is told from the ground at no more than this
-_GRABCUT_PIXELS = 200_000
+_GRABCUT_PIXELS = 60_000  # it takes 25 s per megapixel
 _MOTTLED_LAB = 8.0  # a ground that scatters more than this may hide an object
 _BLUR_PX = 0.8
 _TRIM_PX = 2
