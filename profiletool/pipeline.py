@@ -223,12 +223,13 @@ def _design(
     material, profile = request.material, subject.profile
     fit = misfit(shape, profile)
     seam = best_seam(layout.joints)
-    notes = [*reasons, *warnings(layout, profile, fit, request.tolerance_mm)]
+    notes = list(reasons)
+    if subject.silhouette is not None and subject.silhouette.method == "grabcut":
+        notes.append("the silhouette is a guess on a busy ground: look at it in overlay.png")
+    notes += warnings(layout, profile, fit, request.tolerance_mm)
     if subject.silhouette is not None and subject.silhouette.touches:
         edges = ", ".join(sorted(subject.silhouette.touches))
         notes.append(f"the object runs out of the frame ({edges}); the profile ends there")
-    if subject.silhouette is not None and subject.silhouette.method == "grabcut":
-        notes.append("the silhouette is a guess on a busy ground: look at it in overlay.png")
     if seam.crossed:
         numbers = ", ".join(str(number) for number in seam.crossed)
         notes.append(f"the weld line crosses the cut of joint {numbers}: weld it again there")
