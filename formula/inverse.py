@@ -21,8 +21,15 @@ def alpha_branch_deg(
     Returns
     -------
     low, high : ndarrays of the broadcast shape, deg
+
+    Raises
+    ------
+    OutOfRange
+        When the formula's parabola opens upward.
     """
     a, b, _ = quadratic_in_alpha(formula, openF_mm, pressure_bar)
+    if np.any((a >= 0.0) & (np.asarray(pressure_bar) > 0.0)):
+        raise OutOfRange(f'formula "{formula.name}" does not fall with alpha; it has no inverse')
     low, high = formula.alpha_range_deg
     with np.errstate(divide="ignore", invalid="ignore"):
         vertex = np.where(a < 0.0, -b / (2.0 * a), low)
@@ -64,7 +71,7 @@ def alpha_deg(
         alpha = (-b - root) / (2.0 * a)
     low, high = alpha_branch_deg(formula, openF, P)
     # At no pressure every alpha gives theta = 0; the widest sector is the strongest one.
-    return np.clip(np.where(a < 0.0, alpha, high), low, high)
+    return np.clip(np.where(P > 0.0, alpha, high), low, high)
 
 
 def _check_theta(

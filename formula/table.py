@@ -47,17 +47,25 @@ class Assignment:
 
 def make_table(
     formula: Formula,
-    openF_mm: Sequence[float] = OPENF_MM,
-    pressures_bar: Sequence[float] = PRESSURES_BAR,
-    alpha_deg: Sequence[float] = ALPHA_DEG,
+    openF_mm: Sequence[float] | None = None,
+    pressures_bar: Sequence[float] | None = None,
+    alpha_deg: Sequence[float] | None = None,
 ) -> Table:
-    """Tabulate a formula; by default the rows and columns of the paper's Table 4.
+    """Tabulate a formula.
+
+    By default the rows and columns are those of the paper's Table 4, as far as the formula's
+    range goes.
 
     Raises
     ------
     OutOfRange
-        When a row or column lies outside the range of the formula.
+        When a row or column that was asked for lies outside the range of the formula, or none
+        of the default ones lies inside.
     """
+    openF_mm = _default(OPENF_MM, formula.openF_range_mm) if openF_mm is None else openF_mm
+    if pressures_bar is None:
+        pressures_bar = _default(PRESSURES_BAR, formula.pressure_range_bar)
+    alpha_deg = _default(ALPHA_DEG, formula.alpha_range_deg) if alpha_deg is None else alpha_deg
     check_range(formula, "openF", "mm", openF_mm, formula.openF_range_mm)
     check_range(formula, "pressure", "bar", pressures_bar, formula.pressure_range_bar)
     check_range(formula, "alpha", "deg", alpha_deg, formula.alpha_range_deg)
@@ -113,6 +121,16 @@ def assign(
                 theta_deg=tuple(float(table.theta_deg[row, block, cell]) for block, cell in chosen),
             )
     raise OutOfRange("no single pressure of the table reaches the angles of all joints")
+
+
+def _default(values: Sequence[float], limits: tuple[float, float]) -> list[float]:
+    inside = [value for value in values if limits[0] <= value <= limits[1]]
+    if not inside:
+        raise OutOfRange(
+            f"none of {', '.join(f'{value:g}' for value in values)} lies within the "
+            f"{limits[0]:g} to {limits[1]:g} that the formula holds for; name others"
+        )
+    return inside
 
 
 def _block(table: Table, openF: float) -> int:

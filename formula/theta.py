@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
@@ -16,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from formula.errors import BadFormula, OutOfRange
 
 SCHEMA = "profiletool.formula/1"
+_ABSURD = 1e9
 COEFFICIENTS = ("c11", "c12", "c13", "c21", "c22", "c23", "c31", "c32")
 
 
@@ -128,7 +128,7 @@ def parse_formula(data: bytes, file: str) -> Formula:
     """
     try:
         tree = json.loads(data)
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise BadFormula(f"{file} is not JSON: {error}") from error
     if not isinstance(tree, dict) or tree.get("schema") != SCHEMA:
         raise BadFormula(f'{file} is no formula file: its "schema" is not "{SCHEMA}"')
@@ -155,7 +155,7 @@ def _mapping(tree: dict[str, Any], key: str, file: str) -> dict[str, Any]:
 
 def _number(tree: dict[str, Any], key: str, file: str) -> float:
     value = tree.get(key)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < _ABSURD:
         raise BadFormula(f'{file}: "{key}" is not a number')
     return float(value)
 

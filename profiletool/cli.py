@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import tomllib
 import traceback
 from collections.abc import Iterator
@@ -53,6 +54,14 @@ def _exit_codes(debug: bool) -> Iterator[None]:
             traceback.print_exc()
         typer.echo(f"error: {error}", err=True)
         raise typer.Exit(error.exit_code) from error
+    except (typer.Exit, typer.Abort):
+        raise
+    except Exception as error:  # the last resort: a fault of ours, never a traceback unasked
+        if debug:
+            traceback.print_exc()
+        what = " ".join(f"{type(error).__name__}: {error}".split())
+        typer.echo(f"error: a fault in profiletool ({what}); run again with --debug", err=True)
+        raise typer.Exit(1) from error
 
 
 def _version(wanted: bool) -> None:
@@ -78,17 +87,19 @@ def _read_config(context: typer.Context, path: Path) -> dict[str, Any]:
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise UnreadableInput(f"{path} is not TOML: {error}") from error
     names = {
-        option.removeprefix("--"): parameter.name
+        option.removeprefix("--"): parameter
         for parameter in context.command.params
-        for option in [*parameter.opts, *parameter.secondary_opts]
-        if option.startswith("--") and parameter.name not in (None, "config", "version", "debug")
+        for option in parameter.opts
+        if option.startswith("--") and parameter.name not in (None, "config", "debug")
     }
     known = {}
     for key, value in tree.items():
-        name = names.get(key.replace("_", "-"))
-        if name is None or isinstance(value, dict | list):
+        parameter = names.get(key.replace("_", "-"))
+        if parameter is None or isinstance(value, dict | list):
             raise UsageError(f'{path}: "{key}" is no option of design; see design --help')
-        known[name] = value
+        if isinstance(value, bool) != bool(getattr(parameter, "is_flag", False)):
+            raise UsageError(f'{path}: "{key}" cannot be {json.dumps(value, default=str)}')
+        known[str(parameter.name)] = value
     return known
 
 
@@ -128,13 +139,15 @@ def design(
     diameter: Annotated[float, typer.Option(help="Outer diameter of the tube, mm.")] = 20.0,
     wall: Annotated[float, typer.Option(help="Wall of the tube, mm.")] = 2.0,
     root: Annotated[
-        float, typer.Option(help="Clamped length before the first joint's centre, mm; at least.")
+        float, typer.Option(help="Least clamped length before the first joint's centre, mm.")
     ] = 10.0,
     pitch: Annotated[float, typer.Option(help="Mesh pitch of the gauze, mm.")] = 2.0,
     max_pressure: Annotated[float, typer.Option(help="Highest pressure, bar.")] = 2.0,
     max_length: Annotated[float, typer.Option(help="Longest tube, mm.")] = 250.0,
     formula: FormulaFile = None,
-    method: Annotated[Literal["paper"], typer.Option(help="How joints are chosen.")] = "paper",
+    method: Annotated[
+        Literal["paper"], typer.Option(help="How joints are chosen (optimal comes later).")
+    ] = "paper",
     joints: Annotated[
         int | None,
         typer.Option(min=1, help="Number of joints (default: as few as reach --tolerance)."),
@@ -206,7 +219,9 @@ def design(
 
 @app.command(epilog="Example:  profiletool table --openF 6,8,10 --csv")
 def table(
-    openF: Annotated[str, typer.Option("--openF", help="Cuts, mm, with commas.")] = "6,8,10",
+    openF: Annotated[
+        str | None, typer.Option("--openF", help="Cuts, mm, with commas (default: 6,8,10).")
+    ] = None,
     formula: FormulaFile = None,
     as_json: Json = False,
     as_csv: Annotated[bool, typer.Option("--csv", help="Print the table as CSV.")] = False,
@@ -220,9 +235,12 @@ def table(
         from profiletool.report.text import theta_csv, theta_json, theta_text
 
         try:
-            made = make_table(read_formula(formula), openF_mm=_numbers("--openF", openF))
+            cuts = None if openF is None else _numbers("--openF", openF)
+            made = make_table(read_formula(formula), openF_mm=cuts)
         except OutOfRange as error:
             raise UsageError(str(error)) from error
+        if as_json and as_csv:
+            raise UsageError("--json and --csv exclude each other")
         layout = theta_json if as_json else theta_csv if as_csv else theta_text
         typer.echo(layout(made), nl=False)
 

@@ -32,7 +32,7 @@ def from_json(text: str | bytes, file: str) -> Design:
     from pydantic import TypeAdapter, ValidationError  # heavy, and writing does not need it
 
     try:
-        tree = json.loads(text)
+        tree = json.loads(text, parse_constant=_refuse_constant)
     except (ValueError, RecursionError) as error:
         raise UnreadableInput(f"{file} is not JSON: {error}") from error
     if not isinstance(tree, dict) or tree.get("schema") != SCHEMA:
@@ -64,6 +64,10 @@ def load_design(path: Path) -> Design:
     return from_json(data, path.name)
 
 
+def _refuse_constant(name: str) -> float:
+    raise ValueError(f"{name} is no number")
+
+
 def _rounded(value: Any) -> Any:
     if isinstance(value, float):
         return round(value, _DECIMALS) + 0.0  # no "-0.0"
@@ -77,18 +81,29 @@ def _rounded(value: Any) -> Any:
 def _check(design: Design, file: str) -> None:
     """Refuse numbers that no actuator can have."""
     tube, gauze = design.tube, design.gauze
-    lengths = [tube.outer_diameter_mm, tube.wall_mm, tube.root_mm, gauze.pitch_mm, gauze.thread_mm]
-    if not all(0.0 < value < 1e4 for value in [*lengths, tube.length_mm]) or gauze.turns < 1:
-        raise UnreadableInput(f"{file}: tube and gauze need positive sizes")
+    lengths = (tube.outer_diameter_mm, tube.wall_mm, tube.root_mm, tube.length_mm, gauze.pitch_mm)
+    sane = (
+        all(0.1 <= value <= 1e4 for value in lengths)
+        and tube.wall_mm < 0.5 * tube.outer_diameter_mm
+        and 0.0 < gauze.thread_mm < gauze.pitch_mm
+        and 1 <= gauze.turns <= 10
+        and -360.0 <= gauze.seam_deg <= 720.0
+    )
+    if not sane:
+        raise UnreadableInput(f"{file}: no tube and gauze can have such sizes")
     if not design.joints:
         raise UnreadableInput(f"{file} has no joints")
     end = 0.0
-    for joint in design.joints:
+    for number, joint in enumerate(design.joints, start=1):
         start = joint.centre_mm - 0.5 * joint.openF_mm
+        if joint.number != number:
+            raise UnreadableInput(f"{file}: joint {joint.number} stands where {number} should")
         if not (joint.openF_mm > 0.0 and start >= end - 1e-6):
-            raise UnreadableInput(f"{file}: joint {joint.number} overlaps the one before it")
+            raise UnreadableInput(f"{file}: joint {number} overlaps the one before it")
         if not 0.0 < joint.alpha_closed_deg < 360.0:
-            raise UnreadableInput(f"{file}: joint {joint.number}: alpha_closed_deg is out of range")
+            raise UnreadableInput(f"{file}: joint {number}: alpha_closed_deg is out of range")
+        if not 0.0 <= joint.alpha_center_deg <= 360.0:
+            raise UnreadableInput(f"{file}: joint {number}: alpha_center_deg is out of range")
         end = joint.centre_mm + 0.5 * joint.openF_mm
     if not end <= tube.length_mm + 1e-6:
         raise UnreadableInput(

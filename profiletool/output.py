@@ -21,8 +21,11 @@ def check_free(folder: Path, force: bool) -> None:
     UsageError
         When the folder exists and ``force`` is not given, or it is no folder of ours.
     """
-    if not (folder.exists() or folder.is_symlink()):
-        return
+    try:
+        if not (folder.exists() or folder.is_symlink()):
+            return
+    except OSError as error:
+        raise _cannot_write(folder, error) from error
     if not folder.is_dir() or folder.is_symlink():
         raise UsageError(f"{folder} exists and is no folder; choose another with --out")
     ours = (folder / _MARK).is_file() or not any(folder.iterdir())
@@ -55,9 +58,12 @@ def write_folder(folder: Path, files: Mapping[str, bytes], force: bool) -> None:
                 (fresh / name).write_bytes(data)
             _move_into_place(fresh, target, Path(work) / "old")
     except OSError as error:
-        raise OutputError(
-            f"cannot write {folder}: {error.strerror or error}; choose another place with --out"
-        ) from error
+        raise _cannot_write(folder, error) from error
+
+
+def _cannot_write(folder: Path, error: OSError) -> OutputError:
+    reason = error.strerror or str(error)
+    return OutputError(f"cannot write {folder}: {reason}; choose another place with --out")
 
 
 def _move_into_place(fresh: Path, target: Path, aside: Path) -> None:

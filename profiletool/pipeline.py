@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from formula.errors import BadFormula, OutOfRange
 from formula.theta import Formula, load_formula
-from profiletool.errors import NoObject, UnreadableInput, UsageError
+from profiletool.errors import Infeasible, NoObject, UnreadableInput, UsageError
 from profiletool.image.load import load_picture
 from profiletool.image.marker import find_markers
 from profiletool.image.scale import ScaleRequest, scale_of
@@ -37,7 +37,7 @@ from profiletool.records import (
     Source,
     Tube,
 )
-from profiletool.template.unroll import best_seam
+from profiletool.template.unroll import SeamChoice, best_seam, off_mesh
 
 _WRONG_SCALE = {"height": {"top", "bottom"}, "width": {"left", "right"}}
 
@@ -106,7 +106,7 @@ def run(request: Request, say: Callable[[str], None]) -> Result:
     try:
         table = theta_table(formula, material)
     except OutOfRange as error:
-        raise UsageError(f"{error}; change --pitch or --max-pressure") from error
+        raise UsageError(f"{error}; change --pitch, --max-pressure or --formula") from error
     rules = joint_rules(table, material, request.tolerance_mm)
     sectors = discretise(profile, rules, request.joints)
     if not sectors:
@@ -114,9 +114,12 @@ def run(request: Request, say: Callable[[str], None]) -> Result:
             f"the profile is straight to {request.tolerance_mm:g} mm: there is nothing to bend; "
             "take another --side or stretch, or a smaller --tolerance"
         )
-    layout = lay_out(profile, sectors, table, material)
+    try:
+        layout = lay_out(profile, sectors, table, material)
+    except OutOfRange as error:
+        raise Infeasible(f"no pressure serves all joints: {error}") from error
     say(f"joints: {len(sectors)} at {layout.pressure_bar:.2f} bar")
-    reasons = shortfalls(sectors, layout, rules, material, formula, request.joints is None)
+    reasons = shortfalls(sectors, layout, rules, material, formula, request.joints)
     shape = deform(layout.bends(), layout.length_mm, material.radius_mm, layout.pose, profile.sign)
     design = _design(request, subject, formula, layout, shape, reasons)
     return Result(design, reasons, subject, sectors, layout, shape)
@@ -196,6 +199,8 @@ def _check(request: Request) -> None:
             raise UsageError(f"{option} must be a number above 0, not {value:g}")
     if not (np.isfinite(request.clearance_mm) and request.clearance_mm >= 0.0):
         raise UsageError(f"--clearance must be 0 or more, not {request.clearance_mm:g}")
+    if material.pitch_mm <= material.thread_mm:
+        raise UsageError(f"--pitch must be more than the thread, {material.thread_mm:g} mm")
     if material.wall_mm >= material.radius_mm:
         raise UsageError("--wall must be less than half of --diameter")
     if not 0.0 <= request.start_pct < request.end_pct <= 100.0:
@@ -223,16 +228,11 @@ def _design(
     material, profile = request.material, subject.profile
     fit = misfit(shape, profile)
     seam = best_seam(layout.joints)
+    gauze = Gauze(material.pitch_mm, material.thread_mm, material.turns, seam.seam_deg)
     notes = list(reasons)
-    if subject.silhouette is not None and subject.silhouette.method == "grabcut":
-        notes.append("the silhouette is a guess on a busy ground: look at it in overlay.png")
-    notes += warnings(layout, profile, fit, request.tolerance_mm)
-    if subject.silhouette is not None and subject.silhouette.touches:
-        edges = ", ".join(sorted(subject.silhouette.touches))
-        notes.append(f"the object runs out of the frame ({edges}); the profile ends there")
-    if seam.crossed:
-        numbers = ", ".join(str(number) for number in seam.crossed)
-        notes.append(f"the weld line crosses the cut of joint {numbers}: weld it again there")
+    notes += warnings(layout, profile, fit, request.tolerance_mm, material, formula)
+    notes += _drawing_notes(request, subject)
+    notes += _gauze_notes(layout, gauze, seam)
     notes.append("NOT VERIFIED: no finite-element run has checked this design")
     return Design(
         source=Source(
@@ -246,7 +246,7 @@ def _design(
             origin_px=subject.origin_px,
         ),
         tube=Tube(material.outer_diameter_mm, material.wall_mm, layout.root_mm, layout.length_mm),
-        gauze=Gauze(material.pitch_mm, material.thread_mm, material.turns, seam.seam_deg),
+        gauze=gauze,
         formula=FormulaRef(formula.name, formula.sha256),
         pressure_bar=layout.pressure_bar,
         joints=layout.joints,
@@ -256,3 +256,29 @@ def _design(
         verified=False,
         warnings=tuple(notes),
     )
+
+
+def _drawing_notes(request: Request, subject: Subject) -> Iterator[str]:
+    """Say what the user should know of how the picture was read."""
+    if subject.silhouette is None:
+        if request.scale != ScaleRequest():
+            yield "a drawing is in mm already: the scale options were not used"
+        return
+    if subject.silhouette.method == "grabcut":
+        yield "the silhouette is a guess on a busy ground: look at it in overlay.png"
+    if subject.silhouette.touches:
+        edges = ", ".join(sorted(subject.silhouette.touches))
+        yield f"the object runs out of the frame ({edges}); the profile ends there"
+
+
+def _gauze_notes(layout: Layout, gauze: Gauze, seam: SeamChoice) -> Iterator[str]:
+    """Say what the user should know when cutting the gauze."""
+    for numbers, what in (
+        (seam.crossed, "the weld line crosses the cut of joint {}: weld it again there"),
+        (
+            off_mesh(layout.joints, gauze),
+            "the cuts of joint {} lie off the mesh of the others: cut in the nearest meshes",
+        ),
+    ):
+        if numbers:
+            yield what.format(", ".join(str(number) for number in numbers))

@@ -25,6 +25,12 @@ FloatArray = NDArray[np.float64]
 Side = Literal["left", "right"]
 
 MM_PER_INCH = 25.4
+TOWARD_DEG, AWAY_DEG = 270.0, 90.0  # alpha_center of a joint that bends toward the object, or away
+
+
+def side_sign(side: Side) -> float:
+    """Return +1 where a convex turn is counter-clockwise (left side), else -1."""
+    return 1.0 if side == "left" else -1.0
 
 
 @dataclass(frozen=True)
@@ -88,7 +94,7 @@ class Profile:
 
     Attributes
     ----------
-    points : (N, 2) mm, object frame, from the top down, equally spaced
+    points : (N, 2) mm, object frame, from the top down, 0.1 mm apart but for smoothing
     s : (N,) mm
         Arc length from the first point.
     heading : (N,) rad
@@ -118,7 +124,7 @@ class Profile:
     @property
     def sign(self) -> float:
         """+1 where a convex turn is counter-clockwise (left side), else -1."""
-        return 1.0 if self.side == "left" else -1.0
+        return side_sign(self.side)
 
 
 @dataclass(frozen=True)
@@ -158,6 +164,11 @@ class Joint:
     theta_formula_deg: float
     theta_fe_deg: float | None
     centre_mm: float
+
+    @property
+    def sense(self) -> float:
+        """+1 where the joint bends toward the object, -1 away from it."""
+        return 1.0 if self.alpha_center_deg == TOWARD_DEG else -1.0
 
 
 @dataclass(frozen=True)

@@ -18,8 +18,8 @@ def changed(**changes: Any) -> str:
     return json.dumps({**TREE, **changes})
 
 
-def joints(number: int, **changes: Any) -> list[dict[str, Any]]:
-    return [{**j, **changes} if j["number"] == number else j for j in TREE["joints"]]
+def joints(which: int, **changes: Any) -> list[dict[str, Any]]:
+    return [{**j, **changes} if j["number"] == which else j for j in TREE["joints"]]
 
 
 def test_reads_back_what_it_wrote() -> None:
@@ -67,8 +67,14 @@ def test_no_negative_zero_and_no_noise_in_the_last_bits() -> None:
         (changed(joints=joints(6, centre_mm=102.0)), "joint 6 lies beyond"),
         (changed(joints=joints(4, alpha_closed_deg=360)), "joint 4: alpha_closed_deg"),
         (changed(joints=joints(1, openF_mm=-8)), "joint 1 overlaps"),
-        (changed(tube={**TREE["tube"], "length_mm": float("nan")}), "positive sizes"),
-        (changed(gauze={**TREE["gauze"], "turns": 0}), "positive sizes"),
+        (changed(tube={**TREE["tube"], "length_mm": float("nan")}), "NaN is no number"),
+        (changed(tube={**TREE["tube"], "length_mm": 1e5}), "such sizes"),
+        (changed(tube={**TREE["tube"], "wall_mm": 10}), "such sizes"),
+        (changed(gauze={**TREE["gauze"], "turns": 0}), "such sizes"),
+        (changed(gauze={**TREE["gauze"], "thread_mm": 2}), "such sizes"),
+        (changed(gauze={**TREE["gauze"], "pitch_mm": 1e-4}), "such sizes"),
+        (changed(joints=joints(2, number=7)), "joint 7 stands where 2"),
+        (changed(joints=joints(2, alpha_center_deg=1e300)), "joint 2: alpha_center_deg"),
     ],
 )
 def test_what_is_no_design_is_refused_by_name(text: str, says: str) -> None:

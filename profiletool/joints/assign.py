@@ -14,10 +14,17 @@ from formula.theta import Formula
 from profiletool.joints.kinematics import Bend, facing_stretch
 from profiletool.joints.sectors import Rules, Sector
 from profiletool.profile.offset import offset_points
-from profiletool.records import FloatArray, Joint, Material, Pose, Profile
+from profiletool.records import (
+    AWAY_DEG,
+    TOWARD_DEG,
+    FloatArray,
+    Joint,
+    Material,
+    Pose,
+    Profile,
+)
 
-TOWARD_DEG, AWAY_DEG = 270.0, 90.0  # alpha_center of a joint that bends toward the object, or away
-WRAP_MM = 2.0  # least wrapped length between two windows: one mesh
+WRAP_MM = 2.0  # least wrapped length between two windows, and at least one mesh
 END_WRAP_MM = 4.0  # least wrapped length at the closed end: the paper's mould leaves 4 mm there
 INTERFERENCE_MM = 0.3  # how deep a straight piece of tube may lie in the object as drawn
 NEAR_DEG = 2.0  # an angle of the table this much above the wanted one is near enough
@@ -40,8 +47,7 @@ class Layout:
             Bend(
                 joint.centre_mm,
                 joint.openF_mm,
-                np.radians(joint.theta_formula_deg)
-                * (1.0 if joint.alpha_center_deg == TOWARD_DEG else -1.0),
+                joint.sense * np.radians(joint.theta_formula_deg),
             )
             for joint in self.joints
         )
@@ -64,10 +70,16 @@ def theta_table(formula: Formula, material: Material) -> Table:
             f'openF that formula "{formula.name}" holds for'
         )
     most = min(material.max_pressure_bar, formula.pressure_range_bar[1])
-    pressures = [row for row in PRESSURES_BAR if row <= most + 1e-9]
+    least = formula.pressure_range_bar[0]
+    pressures = [row for row in PRESSURES_BAR if least <= row <= most + 1e-9]
     if not pressures:
         raise OutOfRange(f"the table begins at {PRESSURES_BAR[0]:g} bar, above {most:g} bar")
     return make_table(formula, openF_mm=cuts.tolist(), pressures_bar=pressures)
+
+
+def wrap_mm(material: Material) -> float:
+    """Least wrapped length between two windows."""
+    return max(WRAP_MM, material.pitch_mm)
 
 
 def joint_rules(table: Table, material: Material, tolerance_mm: float) -> Rules:
@@ -76,7 +88,7 @@ def joint_rules(table: Table, material: Material, tolerance_mm: float) -> Rules:
         radius_mm=material.radius_mm,
         openF_mm=np.array(table.openF_mm),
         theta_most_rad=np.radians(table.theta_deg.max(axis=(0, 2))),
-        wrap_mm=WRAP_MM,
+        wrap_mm=wrap_mm(material),
         tolerance_mm=tolerance_mm,
         interference_mm=min(INTERFERENCE_MM, tolerance_mm),
     )
@@ -97,8 +109,8 @@ def lay_out(
     openF = _nearest_cuts(table, openF, wanted)
     found = assign(table, openF, wanted)
     sectors = [replace(sector, openF_mm=cut) for sector, cut in zip(sectors, openF, strict=True)]
-    F = _phalanges(profile, sectors, material.radius_mm)
-    root, pose = _base(profile, sectors[0], material.root_mm)
+    F = _phalanges(profile, sectors, material)
+    root, pose = _base(profile, sectors[0], material)
     centres = root + np.concatenate([[0.0], np.cumsum(F)])
     joints = tuple(
         Joint(
@@ -122,29 +134,31 @@ def _nearest_cuts(table: Table, openF: Sequence[float], wanted: Sequence[float])
 
     The length of a bending sector is free (step 4), and the columns of a long cut lie up to 14
     deg apart. The longest cut that comes near enough is taken, else the one that comes nearest.
-    The joint with the largest angle keeps its cut: it sets the pressure.
+    Joints with the largest angle keep their cut: it sets the pressure.
     """
     row = table.pressures_bar.index(assign(table, openF, wanted).pressure_bar)
-    lead = max(range(len(openF)), key=lambda k: (wanted[k], -openF[k]))
     cuts = list(openF)
     for k, theta in enumerate(wanted):
         excess = table.theta_deg[row] - theta
         least = np.min(np.where(excess >= 0.0, excess, np.inf), axis=1)
         least[np.array(table.openF_mm) > openF[k] + 1e-9] = np.inf
         near = np.flatnonzero(least <= NEAR_DEG)
-        if k != lead:
+        if theta < max(wanted):
             cuts[k] = table.openF_mm[near[-1] if near.size else np.argmin(least)]
     return cuts
 
 
-def _phalanges(profile: Profile, sectors: Sequence[Sector], radius_mm: float) -> FloatArray:
-    """F of every joint by eq. (10), NS measured on the axis curve: (n,).
+def _phalanges(profile: Profile, sectors: Sequence[Sector], material: Material) -> FloatArray:
+    """F of every joint by eq. (10), NS measured between points of the axis curve: (n,).
+
+    Straight, as in the paper: "between the intersection points of the curved axis with the
+    perpendicular lines" at the ends of the nondeformable sector.
 
     On the profile a bending sector is as long as its cut; one that bends away opens on the
     object-facing side and covers its opening too.
     """
-    axis = offset_points(profile, radius_mm)
-    ends = [0.5 * _covered(sector, radius_mm) for sector in sectors]
+    axis = offset_points(profile, material.radius_mm)
+    ends = [0.5 * _covered(sector, material.radius_mm) for sector in sectors]
 
     def wrapped(start: float, end: float, least: float) -> float:
         if end <= start:
@@ -153,7 +167,7 @@ def _phalanges(profile: Profile, sectors: Sequence[Sector], radius_mm: float) ->
         return max(float(np.hypot(x[1] - x[0], y[1] - y[0])), least)
 
     NS = [
-        wrapped(a.centre + ends[k], b.centre - ends[k + 1], WRAP_MM)
+        wrapped(a.centre + ends[k], b.centre - ends[k + 1], wrap_mm(material))
         for k, (a, b) in enumerate(pairwise(sectors))
     ]
     NS.append(wrapped(sectors[-1].centre + ends[-1], profile.length_mm, END_WRAP_MM))
@@ -167,7 +181,7 @@ def _covered(sector: Sector, radius_mm: float) -> float:
     return sector.openF_mm + max(opening, 0.0)
 
 
-def _base(profile: Profile, first: Sector, root_mm: float) -> tuple[float, Pose]:
+def _base(profile: Profile, first: Sector, material: Material) -> tuple[float, Pose]:
     """Root length and pose: straight along the first line, so that joint 1 lies on its vertex.
 
     The root is as long as asked, longer only where the profile starts with a longer straight or
@@ -176,6 +190,7 @@ def _base(profile: Profile, first: Sector, root_mm: float) -> tuple[float, Pose]
     heading = float(profile.heading[0])
     along = np.array([np.cos(heading), np.sin(heading)])
     lead = float((np.array(first.vertex) - profile.points[0]) @ along)
-    root = round(max(root_mm, lead, 0.5 * first.openF_mm + WRAP_MM), _F_DECIMALS)
+    room = 0.5 * first.openF_mm + wrap_mm(material)
+    root = round(max(material.root_mm, lead, room), _F_DECIMALS)
     x, y = np.array(first.vertex) - root * along
     return root, Pose(float(x), float(y), float(np.degrees(heading)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from profiletool.joints.sectors import Rules, Sector
 from profiletool.records import Material, Misfit, Profile
 
 _FORMULA_LOW_ABOVE_BAR = 1.2
-_LENGTH_SLACK_MM = 0.05
+_SLACK = 0.05  # mm or deg that nobody can see
 
 
 def shortfalls(
@@ -21,12 +21,12 @@ def shortfalls(
     rules: Rules,
     material: Material,
     formula: Formula,
-    free_count: bool,
+    count: int | None,
 ) -> tuple[str, ...]:
     """Reasons why a design is beyond the physical limits; none where it is within them.
 
-    ``free_count`` is False where the number of joints was asked for: then a polygon off the
-    tolerance is what the user chose, not a limit.
+    Where a number of joints was asked for (``count``), a polygon off the tolerance is what the
+    user chose, not a limit.
     """
     reasons = []
     tube = (material.outer_diameter_mm, material.wall_mm)
@@ -36,49 +36,69 @@ def shortfalls(
             f"a wall of {formula.wall_mm:g} mm, not {tube[0]:g} and {tube[1]:g} mm; "
             "give a formula for this tube with --formula"
         )
+    if count is not None and len(sectors) < count:
+        reasons.append(f"there is no room for {count} joints on this profile, only {len(sectors)}")
     for number, sector in enumerate(sectors, start=1):
-        reasons += _sector_shortfalls(number, sector, rules, free_count)
-    if layout.length_mm > material.max_length_mm + _LENGTH_SLACK_MM:
+        place = f"joint {number}, {sector.centre:.0f} mm down the profile"
+        reasons += [f"{place}: {what}" for what in _missing(sector, rules)]
+        if count is None:
+            reasons += [f"{place}: {what}" for what in _off(sector, rules)]
+    if layout.length_mm > material.max_length_mm + _SLACK:
         reasons.append(
             f"the tube would be {layout.length_mm:.1f} mm long, more than "
-            f"{material.max_length_mm:g} mm; shorten the stretch with --from and --to, "
+            f"{material.max_length_mm:g} mm; shorten --root or the stretch (--from, --to), "
             "or raise --max-length"
         )
     return tuple(reasons)
 
 
-def _sector_shortfalls(number: int, sector: Sector, rules: Rules, free_count: bool) -> list[str]:
-    place = f"joint {number}, {sector.centre:.0f} mm down the profile"
-    reasons = []
-    if sector.excess_turn_rad > 0.0:
+def _missing(sector: Sector, rules: Rules) -> Iterator[str]:
+    """Say what one joint cannot do."""
+    if sector.blocked:
+        yield "there is nothing for it to bend; ask for fewer joints"
+    if np.degrees(sector.excess_turn_rad) > _SLACK:
         most = np.degrees(rules.theta_most_rad[np.searchsorted(rules.openF_mm, sector.openF_mm)])
-        reasons.append(
-            f"{place}: a turn of {abs(np.degrees(sector.turn_rad)):.0f} deg is more than one "
-            f"joint reaches ({most:.0f} deg with openF {sector.openF_mm:g} mm); leave such a "
-            "corner out with --from or --to"
+        yield (
+            f"a turn of {abs(np.degrees(sector.turn_rad)):.1f} deg is more than one joint reaches "
+            f"({most:.1f} deg with openF {sector.openF_mm:g} mm at the highest pressure); leave "
+            "such a corner out with --from or --to"
         )
-    if sector.missing_mm > 0.0:
-        reasons.append(
-            f"{place}: its cut of {sector.openF_mm:g} mm lacks {2.0 * sector.missing_mm:.1f} mm "
-            "of room; the profile turns too fast here for this tube: leave it out with --from "
-            "or --to"
+    if sector.missing_mm > _SLACK:
+        yield (
+            f"its cut of {sector.openF_mm:g} mm lacks {2.0 * sector.missing_mm:.1f} mm of room; "
+            "the profile turns too fast here for this tube: leave it out with --from or --to"
         )
-    if free_count and sector.deviation_mm > rules.tolerance_mm:
-        reasons.append(
-            f"{place}: the polygon is {sector.deviation_mm:.1f} mm off the profile, more than "
-            f"the tolerance of {rules.tolerance_mm:g} mm"
+
+
+def _off(sector: Sector, rules: Rules) -> Iterator[str]:
+    """Say where the polygon leaves the profile."""
+    if sector.deviation_mm > rules.tolerance_mm:
+        yield (
+            f"the polygon is {sector.deviation_mm:.2f} mm off the profile, more than the "
+            f"tolerance of {rules.tolerance_mm:g} mm"
         )
-    elif free_count and sector.inward_mm > rules.interference_mm:
-        reasons.append(
-            f"{place}: the polygon runs {sector.inward_mm:.1f} mm into the object, more than "
+    elif sector.inward_mm > rules.interference_mm:
+        yield (
+            f"the polygon runs {sector.inward_mm:.2f} mm into the object, more than "
             f"{rules.interference_mm:g} mm"
         )
-    return reasons
 
 
-def warnings(layout: Layout, profile: Profile, fit: Misfit, tolerance_mm: float) -> tuple[str, ...]:
+def warnings(
+    layout: Layout,
+    profile: Profile,
+    fit: Misfit,
+    tolerance_mm: float,
+    material: Material,
+    formula: Formula,
+) -> tuple[str, ...]:
     """Say what the user should know of a design that can be made."""
     found = []
+    if material.max_pressure_bar > formula.pressure_range_bar[1]:
+        found.append(
+            f'formula "{formula.name}" ends at {formula.pressure_range_bar[1]:g} bar: '
+            "no higher pressure was considered"
+        )
     if layout.pressure_bar > _FORMULA_LOW_ABOVE_BAR:
         found.append(
             f"formula (9) reads low above {_FORMULA_LOW_ABOVE_BAR:g} bar: expect the joints to "

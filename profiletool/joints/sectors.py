@@ -29,6 +29,7 @@ BoolArray = NDArray[np.bool_]
 
 _GRID_SHARE = 0.1  # of the tube's radius: break points are tried this far apart
 _GRID_TURN_RAD = np.radians(6.0)  # or closer, where the profile turns
+_MOST_BREAKS = 260  # the work grows with the cube of their number
 _STRAIGHT_RAD = np.radians(0.5)  # less turn than this is no joint
 _BLOCKED_MM = 1000.0  # cost of a pair of lines that do not meet between their break points
 _PER_RAD_MM = 100.0  # cost of turn beyond what a joint reaches
@@ -85,6 +86,8 @@ class Sector:
         Deepest place of the polygon inside the object.
     excess_turn_rad, missing_mm : float
         What is beyond the reach of one joint: turn, and room for its cut. Zero where it fits.
+    blocked : bool
+        The lines do not meet between their break points: there is nothing to bend.
     """
 
     start: float
@@ -97,6 +100,7 @@ class Sector:
     inward_mm: float
     excess_turn_rad: float
     missing_mm: float
+    blocked: bool
 
 
 @dataclass(frozen=True)
@@ -147,7 +151,7 @@ def discretise(profile: Profile, rules: Rules, count: int | None = None) -> tupl
     cost = np.full((len(grid), len(grid)), np.inf)
     for i, piece in enumerate(pieces):
         cost[i, i + 1 :] = piece.cost(rules)
-    if count is None and _straight_deviation(profile) <= rules.tolerance_mm:
+    if _straight_deviation(profile) <= rules.tolerance_mm:
         return ()
     path = _best_path(cost, rules.tolerance_mm, count)
     return tuple(_sector(profile, grid, pieces[i], i, j) for i, j in pairwise(path))
@@ -157,7 +161,7 @@ def _grid(profile: Profile, spacing: float) -> IntArray:
     """Pick the indices of the points that may be break points, both ends among them."""
     turned = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(profile.heading)))])
     measure = profile.s / spacing + turned / _GRID_TURN_RAD
-    count = int(np.ceil(measure[-1]))
+    count = min(int(np.ceil(measure[-1])), _MOST_BREAKS)
     at = np.searchsorted(measure, np.linspace(0.0, measure[-1], count + 1))
     return np.unique(np.clip(at, 0, len(measure) - 1))
 
@@ -191,7 +195,7 @@ def _pieces(profile: Profile, grid: IntArray, i: int, rules: Rules) -> _Pieces:
     # Lines that meet behind a break point leave no sector to bend between them.
     blocked = (np.abs(turn) < _STRAIGHT_RAD) | ~(ahead >= 0.0) | ~(behind >= 0.0)
     radius = np.where(turn < 0.0, opened / np.maximum(-turn, _STRAIGHT_RAD), 0.0)
-    vertex = np.where(blocked[:, None], 0.0, vertex)
+    vertex = np.where(blocked[:, None], profile.points[(here + later) // 2], vertex)
     deviation, inward = _deviation(profile, grid[i:], vertex, radius)
     return _Pieces(turn, centre, openF, vertex, deviation, inward, excess, missing, blocked)
 
@@ -325,4 +329,5 @@ def _sector(profile: Profile, grid: IntArray, piece: _Pieces, i: int, j: int) ->
         inward_mm=float(piece.inward[k]),
         excess_turn_rad=float(piece.excess_turn[k]),
         missing_mm=float(piece.missing_mm[k]),
+        blocked=bool(piece.blocked[k]),
     )

@@ -62,8 +62,12 @@ def reachable_line(
     closed = grown.buffer(_HAIR_MM - radius_mm, quad_segs=_QUADRANT_SEGMENTS)
     ring = shapely.get_coordinates(max(shapely.get_parts(closed), key=_area).exterior)[:-1]
     length = shapely.LinearRing(ring).length
+    # Where the ends come to lie: straight across from them, on the tube's side.
+    ends = np.array([points[0], points[-1]])
+    along = np.array([points[1] - points[0], points[-1] - points[-2]])
+    across = np.column_stack([along[:, 1], -along[:, 0]]) / np.hypot(*along.T)[:, None]
     start, end = shapely.line_locate_point(
-        shapely.LinearRing(ring), shapely.points([points[0], points[-1]])
+        shapely.LinearRing(ring), shapely.points(ends + toward * clearance_mm * across)
     )
     ways = (
         ring_stretch(ring, start, end if end > start else end + length),

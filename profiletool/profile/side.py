@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 
 from profiletool.profile.curve import ring_stretch
-from profiletool.records import FloatArray, Side
+from profiletool.records import FloatArray, Side, side_sign
 
 _TOP_SHARE = 0.02  # of the height: what counts as the top of the object
 
@@ -55,7 +55,7 @@ def side_of(outline: FloatArray, side: Side, margin: float) -> Stretch:
     Stretch
         From the top middle to the bottom middle.
     """
-    mirror = np.array([1.0 if side == "left" else -1.0, 1.0])
+    mirror = np.array([side_sign(side), 1.0])
     ring = shapely.LinearRing(outline * mirror)
     if not ring.is_ccw:
         ring = ring.reverse()

@@ -12,12 +12,13 @@ from profiletool.errors import NoObject
 from profiletool.profile.curve import Curve, arc_length, make_curve, smoothing_width
 from profiletool.profile.offset import reachable_line, reachable_outline
 from profiletool.profile.side import Stretch, side_of
-from profiletool.records import FloatArray, Profile, Side
+from profiletool.records import FloatArray, Profile, Side, side_sign
 
 STEP_MM = 0.1  # spacing of a profile's points
 _LEAST_WINDOW = 0.2  # of the tube's radius: what is shorter is nothing to a tube
 _UNDERCUT = np.sin(np.radians(20.0))  # normals steeper down than this face the base
 _STRAIGHT_DOWN = np.cos(np.radians(45.0))
+_LONGEST_MM = 3000.0  # twelve times the longest tube: the scale must be wrong
 _BRIDGED_MM = 0.1  # a gap that counts as bridged, where noise does not ask for more
 
 
@@ -73,7 +74,7 @@ def profile_of_line(points: FloatArray, reach: Reach) -> Profile:
     drop = points[0, 1] - points[-1, 1]
     if drop < -0.01 * arc_length(points)[-1]:
         points = points[::-1]
-    toward = 1.0 if reach.side == "left" else -1.0
+    toward = side_sign(reach.side)
     line = reachable_line(points, reach.radius_mm, reach.clearance_mm, toward)
     return _profile(Stretch(line, 0.0, float(arc_length(line)[-1])), reach, None)
 
@@ -85,22 +86,23 @@ def _window(reach: Reach) -> float:
 
 
 def _profile(stretch: Stretch, reach: Reach, outline: FloatArray | None) -> Profile:
+    _check_length(stretch.end - stretch.start, reach)
     whole = make_curve(stretch.points, STEP_MM, _window(reach))
-    sign = 1.0 if reach.side == "left" else -1.0
+    sign = side_sign(reach.side)
     curvature = sign * whole.curvature
     first, last = np.searchsorted(whole.s, [stretch.start, stretch.end - 0.5 * STEP_MM])
     last = min(last, len(whole.s) - 1)  # smoothing takes a little off a corner's length
     if outline is not None:
         side = slice(int(first), int(last) + 1)
         last = first + _above_base(whole, side, curvature, reach)
-    length = whole.s[last] - whole.s[first]
-    if length < 4.0 * reach.radius_mm:
-        raise NoObject(
-            f"the profile is {length:.1f} mm long, shorter than two diameters of the tube; "
-            "check the scale, or take a thinner tube"
-        )
+    _check_length(whole.s[last] - whole.s[first], reach)
     shares = np.array([reach.start_pct, reach.end_pct]) / 100.0
     low, high = first + np.rint(shares * (last - first)).astype(int)
+    if whole.s[high] - whole.s[low] < 2.0 * reach.radius_mm:
+        raise NoObject(
+            f"only {whole.s[high] - whole.s[low]:.1f} mm lie between --from and --to, less than "
+            "one diameter of the tube; take a longer stretch"
+        )
     kept = slice(int(low), int(high) + 1)
     # Level at the top is pi on the left side and 0 on the right: count from the far side of that.
     least = 0.0 if reach.side == "left" else -np.pi
@@ -116,6 +118,18 @@ def _profile(stretch: Stretch, reach: Reach, outline: FloatArray | None) -> Prof
     )
 
 
+def _check_length(length: float, reach: Reach) -> None:
+    if length < 4.0 * reach.radius_mm:
+        raise NoObject(
+            f"the profile is {length:.1f} mm long, shorter than two diameters of the tube; "
+            "check the scale, or take a thinner tube"
+        )
+    if length > _LONGEST_MM:
+        raise NoObject(
+            f"the profile is {length:.3g} mm long, more than {_LONGEST_MM:g} mm; check the scale"
+        )
+
+
 def _above_base(whole: Curve, side: slice, curvature: FloatArray, reach: Reach) -> int:
     """Index, counted from the side's first point, of its last point above the object's base.
 
@@ -124,7 +138,7 @@ def _above_base(whole: Curve, side: slice, curvature: FloatArray, reach: Reach) 
     corner bends. An object that is round below (an egg) has no such corner: there the base is
     what faces straight down to within 45 deg.
     """
-    sign = 1.0 if reach.side == "left" else -1.0
+    sign = side_sign(reach.side)
     points = whole.points[side]
     # Looking ahead by the tube's radius steps over grooves of the underside.
     ahead = np.minimum(np.arange(len(points)) + round(reach.radius_mm / STEP_MM), len(points) - 1)

@@ -15,11 +15,10 @@ from matplotlib.patches import Polygon
 from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
-from profiletool.joints.assign import TOWARD_DEG
 from profiletool.joints.kinematics import Bend, Shape
 from profiletool.joints.sectors import Sector
 from profiletool.profile.offset import offset_curve, offset_points
-from profiletool.records import Design, FloatArray, Joint, Profile
+from profiletool.records import Design, FloatArray, Profile
 
 # Okabe and Ito's palette: told apart by colour-blind readers too.
 INK, BLUE, SKY, GREEN, RED, YELLOW = (
@@ -35,7 +34,7 @@ _SCALE_BAR_MM = 20.0
 
 @dataclass(frozen=True)
 class Backdrop:
-    """The picture behind the drawing: pixels (H, W, 3), where they lie, and the object's outline.
+    """The picture behind the drawing: pixels (H, W, 3) and where they lie.
 
     ``extent`` is (left, right, bottom, top) in mm, object frame.
     """
@@ -199,14 +198,10 @@ def _draw_joints(axes: Any, scene: Scene) -> None:
             bbox={"boxstyle": "circle,pad=0.28", "fc": RED, "ec": "white", "lw": 1.2},
         )  # fmt: skip
         axes.text(
-            *inner[at], f"{_signed(joint):.0f}°", color=INK, fontsize=10.5, weight="bold",
+            *inner[at], f"{joint.sense * joint.theta_formula_deg:.0f}°",
+            color=INK, fontsize=10.5, weight="bold",
             ha="center", va="center", zorder=9, path_effects=_halo(3.0),
         )  # fmt: skip
-
-
-def _signed(joint: Joint) -> float:
-    toward = joint.alpha_center_deg == TOWARD_DEG
-    return joint.theta_formula_deg if toward else -joint.theta_formula_deg
 
 
 def _draw_scale_bar(axes: Any, limits: tuple[float, float, float, float]) -> None:

@@ -23,6 +23,8 @@ def joint_table(design: Design) -> str:
         f"{j.alpha_center_deg:16g}  {j.theta_target_deg:9.1f}  {j.theta_formula_deg:11.1f}"
         for j in design.joints
     ]
+    fit = design.fit.formula
+    lines.append(f"predicted off the profile: {fit.rms_mm:.1f} mm RMS, {fit.max_mm:.1f} mm at most")
     return "\n".join(lines) + "\n"
 
 

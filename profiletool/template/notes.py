@@ -7,11 +7,11 @@ from pathlib import PurePath
 
 import numpy as np
 
-from profiletool.records import Design, FloatArray
+from profiletool.records import TOWARD_DEG, Design, FloatArray
 from profiletool.template.labels import short
 from profiletool.template.sheet import Box, LayerName, Line, Text
 from profiletool.template.strokes import text_width
-from profiletool.template.unroll import OBJECT_SIDE_DEG, SeamChoice, off_mesh, slit_rows
+from profiletool.template.unroll import SeamChoice, off_mesh, slit_rows
 
 TITLE_MM, ALARM_MM, BODY_MM, SMALL_MM = 5.0, 6.0, 3.0, 2.5
 LINE_SPACING = 1.7
@@ -124,7 +124,7 @@ def end_view(seam_deg: float, x: float, y: float) -> tuple[tuple[Line, ...], tup
     ]
     texts = (
         Text("NOTE", f"seam {short(seam_deg)}°", x, y - SMALL_MM / 2, SMALL_MM, "centre"),
-        Text("NOTE", f"object side {short(OBJECT_SIDE_DEG)}°", x, y - r - 7.5, SMALL_MM, "centre"),
+        Text("NOTE", f"object side {short(TOWARD_DEG)}°", x, y - r - 7.5, SMALL_MM, "centre"),
         Text("NOTE", "seen from closed end", x, y - r - 13.0, SMALL_MM, "centre"),
     )
     return tuple(lines), texts

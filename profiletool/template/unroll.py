@@ -24,10 +24,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from profiletool.records import FloatArray, Gauze, Joint, Tube
+from profiletool.records import TOWARD_DEG, FloatArray, Gauze, Joint, Tube
 
 FULL_CIRCLE = 360.0
-OBJECT_SIDE_DEG = 270.0
 # Angles closer than this are the same edge; slivers between them are no place for a seam.
 SAME_DEG = 1e-6
 SAME_MM = 1e-6
@@ -231,7 +230,7 @@ def best_seam(joints: Sequence[Joint]) -> SeamChoice:
     """
     start, extent = _sectors(joints)
     edges = _edges(start, extent)
-    home = joints[0].alpha_center_deg if joints else OBJECT_SIDE_DEG
+    home = joints[0].alpha_center_deg if joints else TOWARD_DEG
     if not edges.size:
         return seam_at(joints, home)
     width = np.diff(edges, append=edges[0] + FULL_CIRCLE)

@@ -8,9 +8,7 @@ import pytest
 from formula.table import assign
 from formula.theta import load_formula
 from profiletool.joints.assign import (
-    AWAY_DEG,
     END_WRAP_MM,
-    TOWARD_DEG,
     WRAP_MM,
     joint_rules,
     lay_out,
@@ -18,7 +16,7 @@ from profiletool.joints.assign import (
 )
 from profiletool.joints.sectors import Sector, discretise
 from profiletool.profile.target import Reach, profile_of_line, profile_of_object
-from profiletool.records import Material, Profile
+from profiletool.records import AWAY_DEG, TOWARD_DEG, Material, Profile
 
 PAPER = load_formula()
 MATERIAL = Material()
@@ -28,7 +26,7 @@ CIRCLE = 30.0 * np.column_stack([np.cos(T), np.sin(T)])
 
 
 def sector(centre: float, turn_deg: float, openF: float, vertex: tuple[float, float]) -> Sector:
-    return Sector(0.0, centre, 0.0, vertex, np.radians(turn_deg), openF, 0.0, 0.0, 0.0, 0.0)
+    return Sector(0.0, centre, 0.0, vertex, np.radians(turn_deg), openF, 0.0, 0.0, 0.0, 0.0, False)
 
 
 @pytest.fixture(scope="module")
