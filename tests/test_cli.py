@@ -220,7 +220,15 @@ def test_config_gives_defaults_and_the_command_line_wins(samples: Path, tmp_path
 
 @pytest.mark.parametrize(
     ("text", "code"),
-    [("sidee = 1", 2), ("side = [1]", 2), ("side = 'up'", 2), ("side = ", 3), ("root = 'x'", 2)],
+    [
+        ("sidee = 1", 2),
+        ("side = [1]", 2),
+        ("height = true", 2),
+        ("no-verify = true", 2),
+        ("side = 'up'", 2),
+        ("side = ", 3),
+        ("root = 'x'", 2),
+    ],
 )
 def test_config_is_checked(text: str, code: int, samples: Path, tmp_path: Path) -> None:
     (tmp_path / "lab.toml").write_text(text)
@@ -306,3 +314,52 @@ def test_shape_csv_holds_target_and_predicted_line(samples: Path, tmp_path: Path
             assert points[-1, 0] == pytest.approx(length, abs=0.01)
     first = next(r for r in rows if r["curve"] == "formula")
     assert float(first["x_mm"]) == pytest.approx(design["base_pose"]["x_mm"], abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("points", "options", "code"),
+    [
+        ("500,100\n500,50\n500,0\n", ("--joints", "2"), 5),
+        ("0,80\n0,0\n80,0\n", ("--from", "50", "--to", "50.01"), 5),
+        ("0,80\n-20,0\n0,-80\n", ("--joints", "300"), 6),
+        ("0,80\n-20,0\n0,-80\n", ("--out", "x" * 300), 1),
+    ],
+)
+def test_odd_requests_end_in_one_line(
+    points: str, options: tuple[str, ...], code: int, tmp_path: Path
+) -> None:
+    (tmp_path / "odd.csv").write_text(points)
+    result = call("design", "odd.csv", *options)
+    assert result.exit_code == code, result.stderr
+    error_of(result)
+
+
+def test_a_mirrored_drawing_on_the_other_side_is_the_same_design(
+    samples: Path, tmp_path: Path
+) -> None:
+    rows = [line.split(",") for line in (samples / REST).read_text().splitlines()[1:]]
+    (tmp_path / "mirror.csv").write_text("\n".join(f"{-float(x)},{y}" for x, y in rows))
+    left = json.loads(call("design", samples / REST, "--json").stdout)
+    right = json.loads(call("design", "mirror.csv", "--side", "right", "--json").stdout)
+    assert right["joints"] == left["joints"]
+    assert right["fit"] == left["fit"]
+    assert right["base_pose"]["x_mm"] == -left["base_pose"]["x_mm"]
+
+
+def test_scale_options_on_a_drawing_are_not_silent(samples: Path) -> None:
+    design = json.loads(call("design", samples / REST, "--height", 50, "--json").stdout)
+    assert any("scale options were not used" in warning for warning in design["warnings"])
+
+
+def test_the_fit_is_on_the_screen(samples: Path) -> None:
+    assert "predicted off the profile:" in call("design", samples / REST).stdout
+
+
+def test_a_fault_of_ours_is_one_line_too(monkeypatch: pytest.MonkeyPatch, samples: Path) -> None:
+    def broken(*_: object) -> None:
+        raise RuntimeError("two\nlines")
+
+    monkeypatch.setattr("profiletool.pipeline.run", broken)
+    result = call("design", samples / REST)
+    assert result.exit_code == 1
+    assert "fault in profiletool (RuntimeError: two lines)" in error_of(result)

@@ -80,3 +80,15 @@ def test_and_a_failure_of_the_last_step(tmp_path: Path, monkeypatch: pytest.Monk
     with pytest.raises(OutputError, match="No space left"):
         write_folder(tmp_path / "out", {"design.json": b"x"}, force=True)
     assert content(tmp_path / "out") == FILES
+
+
+def test_force_does_not_follow_a_link(tmp_path: Path) -> None:
+    write_folder(tmp_path / "real", FILES, force=False)
+    (tmp_path / "link").symlink_to(tmp_path / "real")
+    with pytest.raises(UsageError, match="no folder"):
+        write_folder(tmp_path / "link", FILES, force=True)
+
+
+def test_a_name_that_no_system_takes(tmp_path: Path) -> None:
+    with pytest.raises(OutputError, match="cannot write"):
+        check_free(tmp_path / ("x" * 300), force=False)

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -57,3 +59,9 @@ def test_no_pressure() -> None:
 def test_out_of_range_says_which_limit(theta: float, openF: float, P: float, says: str) -> None:
     with pytest.raises(OutOfRange, match=says):
         alpha_deg(PAPER, theta, openF, P)
+
+
+def test_a_formula_that_rises_with_alpha_has_no_inverse() -> None:
+    rising = replace(PAPER, coefficients=tuple(-c for c in PAPER.coefficients))
+    with pytest.raises(OutOfRange, match="no inverse"):
+        alpha_deg(rising, 20.0, 8.0, 1.5)

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -82,3 +83,26 @@ def test_openF_outside_the_table() -> None:
 def test_rows_and_columns_outside_the_formula(axis: str, value: float) -> None:
     with pytest.raises(OutOfRange, match="outside"):
         make_table(PAPER, **{axis: (value,)})
+
+
+def test_of_equal_leads_the_shortest_cut_sets_the_pressure() -> None:
+    table = small([[[20.0, 12.0], [20.0, 12.0]], [[30.0, 20.0], [40.0, 25.0]]])
+    # At 1 bar both reach 20 exactly; only the 6 mm cut has 20 in the second row too.
+    assert assign(table, [8, 6], [19.0, 19.0]).pressure_bar == 1.0
+    apart = small([[[15.0, 12.0], [20.0, 12.0]], [[30.0, 20.0], [40.0, 25.0]]])
+    assert assign(apart, [8, 6], [20.0, 20.0]).pressure_bar == 2.0
+
+
+def test_default_rows_follow_the_range_of_the_formula() -> None:
+    narrow = replace(
+        PAPER,
+        alpha_range_deg=(90.0, 150.0),
+        openF_range_mm=(8.0, 12.0),
+        pressure_range_bar=(0.0, 1.5),
+    )
+    table = make_table(narrow)
+    assert (table.alpha_deg[0], table.alpha_deg[-1]) == (96.0, 144.0)
+    assert table.openF_mm == (8.0, 10.0)
+    assert table.pressures_bar[-1] == 1.5
+    with pytest.raises(OutOfRange, match="none of"):
+        make_table(replace(PAPER, openF_range_mm=(20.0, 30.0)))

@@ -74,3 +74,18 @@ def test_a_written_formula_reads_back(tmp_path: Path) -> None:
     assert mine.name == "mine"
     assert mine.coefficients == PAPER.coefficients
     assert mine.sha256 != PAPER.sha256
+
+
+@pytest.mark.parametrize("text", ["[" * 100_000, '{"schema": "profiletool.formula/1"}'])
+def test_hostile_formula_files(text: str) -> None:
+    with pytest.raises(BadFormula):
+        parse_formula(text.encode(), "x.json")
+
+
+def test_numbers_beyond_reason_are_refused() -> None:
+    huge = {**FILE, "domain": {**FILE["domain"], "wall_mm": 10**400}}
+    with pytest.raises(BadFormula, match="wall_mm"):
+        parse_formula(json.dumps(huge).encode(), "x.json")
+    same = {**FILE, "domain": {**FILE["domain"], "openF_mm": [8, 8]}}
+    with pytest.raises(BadFormula, match="empty"):
+        parse_formula(json.dumps(same).encode(), "x.json")

@@ -117,3 +117,32 @@ def test_cuts_are_whole_meshes_within_the_formula(pitch: float, cuts: tuple[int,
 
 def test_no_row_above_the_highest_pressure() -> None:
     assert theta_table(PAPER, replace(MATERIAL, max_pressure_bar=1.55)).pressures_bar[-1] == 1.5
+
+
+def test_an_away_joint_covers_its_opening_on_the_profile(circle: Profile) -> None:
+    def first_F(turn: float) -> float:
+        pair = [sector(15.0, 25.0, 8.0, (-9.0, 30.0)), sector(50.0, turn, 8.0, (0.0, 0.0))]
+        return lay_out(circle, pair, TABLE, MATERIAL).joints[0].F_mm
+
+    # 17.9 mm per radian, half of it on this side, at 4/3 of the profile's length on the axis.
+    opening = 17.9 * np.radians(25.0) / 2.0
+    assert first_F(25.0) - first_F(-25.0) == pytest.approx(opening * 4.0 / 3.0, abs=0.3)
+
+
+def test_the_root_gives_the_first_cut_its_room(circle: Profile) -> None:
+    short = replace(MATERIAL, root_mm=1.0)
+    layout = lay_out(circle, [sector(2.0, 60.0, 14.0, (-2.0, 30.0))], TABLE, short)
+    assert layout.root_mm == 7.0 + WRAP_MM
+
+
+def test_equal_largest_angles_keep_their_cuts(circle: Profile) -> None:
+    pair = [sector(15.0, 38.0, 12.0, (-9.0, 30.0)), sector(50.0, 38.0, 12.0, (0.0, 0.0))]
+    assert [j.openF_mm for j in lay_out(circle, pair, TABLE, MATERIAL).joints] == [12.0, 12.0]
+
+
+def test_a_coarser_gauze_keeps_one_mesh_between_windows(circle: Profile) -> None:
+    coarse = replace(MATERIAL, pitch_mm=3.0)
+    table = theta_table(PAPER, coarse)
+    pair = [sector(40.0, 25.0, 9.0, (-9.0, 30.0)), sector(41.0, 25.0, 9.0, (0.0, 0.0))]
+    assert lay_out(circle, pair, table, coarse).joints[0].F_mm == 9.0 + 3.0
+    assert joint_rules(table, coarse, 1.0).wrap_mm == 3.0

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -91,3 +92,32 @@ def test_misfit_counts_what_is_not_covered_but_not_what_sticks_out() -> None:
     assert short.max_mm == pytest.approx(far_end, abs=0.05)
     ahead = deform([], 20.0, 10.0, replace(pose, x_mm=pose.x_mm + 15.0), 1.0)
     assert misfit(ahead, profile).max_mm == pytest.approx(far_end, abs=0.05)
+
+
+def test_stretch_of_the_facing_line_by_hand() -> None:
+    # Radius 10, axis of rotation 7.9 mm off the axis: 2.1 mm inside the uncut surface.
+    assert facing_stretch(1.0, 10.0) == pytest.approx(-2.1)
+    assert facing_stretch(-1.0, 10.0) == pytest.approx(17.9)
+
+
+def test_the_bulbs_centre_line_grows_as_measured() -> None:
+    # Whole-actuator FE of the paper's bulb: 26.8 mm for a total turn of 3.38 rad.
+    turns = np.radians([34.36, 35.09, 34.71, 29.35, 20.10, -44.49])
+    centres, cuts = [10, 29, 48, 67, 79, 91], [8, 8, 8, 8, 6, 10]
+    bends = [Bend(c, o, t) for c, o, t in zip(centres, cuts, turns, strict=True)]
+    bent = deform(bends, 103.0, 10.0, ORIGIN, 1.0)
+    assert length(bent.axis) - 103.0 == pytest.approx(26.8, abs=0.4)
+
+
+def test_misfit_looks_from_the_line_too() -> None:
+    profile = profile_of_object(CIRCLE, Reach("left", 10.0))
+    x, y = profile.points[0]
+    # A tube that leaves the profile and ends level with its end: the line is far, not the profile.
+    straight = misfit(deform([], 60.0, 10.0, Pose(float(x), float(y), 230.0), 1.0), profile)
+    to_line = shapely.distance(
+        shapely.points(profile.points),
+        shapely.LineString(
+            [(x, y), (x + 60 * np.cos(np.radians(230)), y + 60 * np.sin(np.radians(230)))]
+        ),
+    )
+    assert straight.rms_mm != pytest.approx(float(np.sqrt(np.mean(to_line**2))), rel=0.02)

@@ -150,3 +150,33 @@ def test_scales_with_the_object_and_the_tube(factor: float) -> None:
         geometry(discretise(profile, RULES)) * [factor, 1.0, factor, factor],
         atol=1e-6 * factor,
     )
+
+
+def test_a_cut_that_finds_no_room_says_how_much_is_missing() -> None:
+    # Two bends 8 mm apart: cuts of 6 mm and a mesh between them want 8 mm and their share.
+    profile = bent_line((40, 0), (1, 28), (3, 0), (1, 28), (40, 0))
+    sectors = discretise(profile, RULES, 2)
+    assert max(s.missing_mm for s in sectors) > 1.0
+
+
+def test_an_s_on_the_right_is_the_mirror_image() -> None:
+    left = bent_line((30, 0), (14, 30), (30, 0), (24, -30), (30, 0))
+    right = profile_of_line(left.points * [-1, 1], Reach("right", 10.0))
+    np.testing.assert_allclose(
+        geometry(discretise(right, RULES)), geometry(discretise(left, RULES)), atol=0.3
+    )
+
+
+def test_nothing_to_bend_is_never_passed_off_as_a_joint() -> None:
+    arc = profile_of_object(CIRCLE + [500.0, 0.0], Reach("left", 10.0, end_pct=30.0))
+    sectors = discretise(arc, RULES, 6)
+    for s in sectors:
+        assert s.blocked or abs(s.turn_rad) > 0.0
+        assert abs(s.vertex[0] - 500.0) < 40.0
+
+
+def test_a_long_profile_stays_quick() -> None:
+    waves = [(60.0, 40.0), (60.0, -40.0)] * 10
+    grid_free = bent_line(*waves)
+    assert grid_free.length_mm > 1000.0
+    assert discretise(grid_free, RULES)

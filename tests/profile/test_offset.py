@@ -83,3 +83,22 @@ def test_an_s_of_gentle_arcs_is_reachable_on_both_sides(toward: float) -> None:
     assert gap.max() < 0.01
     assert shapely.LineString(points).length == pytest.approx(50 * np.pi, rel=1e-3)
     np.testing.assert_allclose(points[[0, -1]], line[[0, -1]], atol=0.01)
+
+
+@pytest.mark.parametrize("toward", [1.0, -1.0])
+@pytest.mark.parametrize("clearance", [1.0, 3.0, 10.0])
+def test_clearance_moves_an_open_line_across_not_round_its_ends(
+    clearance: float, toward: float
+) -> None:
+    t = np.linspace(0.0, np.pi / 2, 500)
+    arc = 60.0 * np.column_stack([-np.sin(t), np.cos(t)])  # from the top down the left
+    points = reachable_line(arc, 10.0, clearance, toward)
+    radius = 60.0 + toward * clearance
+    np.testing.assert_allclose(points[0], [0.0, radius], atol=0.2)
+    np.testing.assert_allclose(points[-1], [-radius, 0.0], atol=0.2)
+    assert shapely.LineString(points).length == pytest.approx(radius * np.pi / 2, abs=0.4)
+
+
+def test_what_the_tube_can_follow_is_kept_point_for_point() -> None:
+    line = np.array([[0.0, 50.0], [-3.0, 0.0], [0.0, -50.0]])
+    assert reachable_line(line, 10.0, 0.0, 1.0) is line

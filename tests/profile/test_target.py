@@ -81,3 +81,10 @@ def test_an_open_line_runs_down(direction: int) -> None:
 def test_a_level_line_runs_as_drawn() -> None:
     line = np.array([[100.0, 0.0], [50.0, 10.0], [0.0, 0.0]])
     assert profile_of_line(line, Reach("left", 10.0)).points[0, 0] == pytest.approx(100.0, abs=0.01)
+
+
+def test_too_short_a_stretch_and_too_large_an_object() -> None:
+    with pytest.raises(NoObject, match="between --from and --to"):
+        profile_of_object(CIRCLE, Reach("left", 10.0, start_pct=50.0, end_pct=60.0))
+    with pytest.raises(NoObject, match="check the scale"):
+        profile_of_object(CIRCLE * 1e6, Reach("left", 10.0))

@@ -71,3 +71,8 @@ def test_the_picture_lies_in_the_object_frame() -> None:
     backdrop = backdrop_of(rgb, 0.5, (9.5, 4.5))
     assert backdrop.extent == (-5.0, 5.0, -17.5, 2.5)
     assert backdrop_of(np.zeros((4000, 2000, 3), np.uint8), 0.5, (0.0, 0.0)).rgb.shape[0] <= 1400
+
+
+def test_an_infeasible_design_says_so(bulb: Scene) -> None:
+    marked = replace(bulb, design=replace(bulb.design, feasible=False))
+    assert worst_block(reduced(draw_overlay(bulb)), reduced(draw_overlay(marked))) > 16.0
