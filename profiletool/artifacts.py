@@ -37,7 +37,7 @@ def scene_of(result: Result) -> Scene:
     subject, layout, design = result.subject, result.layout, result.design
     backdrop = None
     if subject.picture is not None and subject.origin_px is not None:
-        backdrop = backdrop_of(subject.picture.rgb, subject.scale.mm_per_px, subject.origin_px)
+        backdrop = backdrop_of(subject.picture, subject.scale.mm_per_px, subject.origin_px)
     radius = 0.5 * design.tube.outer_diameter_mm
     straight = deform((), layout.length_mm, radius, layout.pose, subject.profile.sign)
     return Scene(

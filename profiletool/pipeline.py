@@ -17,8 +17,8 @@ from profiletool.image.marker import find_markers
 from profiletool.image.scale import ScaleRequest, scale_of
 from profiletool.image.silhouette import find_silhouette
 from profiletool.joints.assign import Layout, joint_rules, lay_out, theta_table
-from profiletool.joints.kinematics import Shape, deform, misfit
-from profiletool.joints.limits import shortfalls, warnings
+from profiletool.joints.kinematics import Shape, deform, depth_inside, meets_itself, misfit
+from profiletool.joints.limits import named, shortfalls, warnings
 from profiletool.joints.sectors import Sector, discretise
 from profiletool.profile.side import top_middle
 from profiletool.profile.target import Reach, profile_of_line, profile_of_object
@@ -119,9 +119,14 @@ def run(request: Request, say: Callable[[str], None]) -> Result:
     except OutOfRange as error:
         raise Infeasible(f"no pressure serves all joints: {error}") from error
     say(f"joints: {len(sectors)} at {layout.pressure_bar:.2f} bar")
-    reasons = shortfalls(sectors, layout, rules, material, formula, request.joints)
+
+    def place(s: float) -> str:
+        share = request.start_pct + s / profile.length_mm * (request.end_pct - request.start_pct)
+        return f"{s:.0f} mm down the profile ({share:.0f} % of the side)"
+
+    reasons = shortfalls(sectors, layout, rules, material, formula, request.joints, place)
     shape = deform(layout.bends(), layout.length_mm, material.radius_mm, layout.pose, profile.sign)
-    design = _design(request, subject, formula, layout, shape, reasons)
+    design = _design(request, subject, formula, layout, shape, sectors, reasons)
     return Result(design, reasons, subject, sectors, layout, shape)
 
 
@@ -178,7 +183,8 @@ def _drawn_subject(request: Request, reach: Reach, say: Callable[[str], None]) -
     make = profile_of_object if drawn.closed else profile_of_line
     profile = make(drawn.points, reach)
     kind = "closed outline" if drawn.closed else "open profile"
-    say(f"drawing: {kind}, {profile.length_mm:.1f} mm to follow")
+    x, y = profile.points[0]
+    say(f"drawing: {kind}, {profile.length_mm:.1f} mm to follow from ({x:.1f}, {y:.1f}) down")
     return Subject(None, None, Scale(1.0, "vector"), None, profile)
 
 
@@ -223,15 +229,16 @@ def _design(
     formula: Formula,
     layout: Layout,
     shape: Shape,
+    sectors: tuple[Sector, ...],
     reasons: tuple[str, ...],
 ) -> Design:
     material, profile = request.material, subject.profile
     fit = misfit(shape, profile)
     seam = best_seam(layout.joints)
     gauze = Gauze(material.pitch_mm, material.thread_mm, material.turns, seam.seam_deg)
-    notes = list(reasons)
+    notes = [*reasons, *_drawing_notes(request, subject)]
     notes += warnings(layout, profile, fit, request.tolerance_mm, material, formula)
-    notes += _drawing_notes(request, subject)
+    notes += _shape_notes(request, subject, shape, max(s.deviation_mm for s in sectors))
     notes += _gauze_notes(layout, gauze, seam)
     notes.append("NOT VERIFIED: no finite-element run has checked this design")
     return Design(
@@ -274,11 +281,27 @@ def _drawing_notes(request: Request, subject: Subject) -> Iterator[str]:
 def _gauze_notes(layout: Layout, gauze: Gauze, seam: SeamChoice) -> Iterator[str]:
     """Say what the user should know when cutting the gauze."""
     for numbers, what in (
-        (seam.crossed, "the weld line crosses the cut of joint {}: weld it again there"),
+        (seam.crossed, "the weld line crosses the cuts of {}: weld again there"),
         (
             off_mesh(layout.joints, gauze),
-            "the cuts of joint {} lie off the mesh of the others: cut in the nearest meshes",
+            "the cuts of {} lie off the mesh of the others: cut in the nearest meshes",
         ),
     ):
         if numbers:
-            yield what.format(", ".join(str(number) for number in numbers))
+            yield what.format(named(numbers))
+
+
+def _shape_notes(
+    request: Request, subject: Subject, shape: Shape, polygon_off_mm: float
+) -> Iterator[str]:
+    """Say what is wrong with the bent shape."""
+    if request.joints is not None and polygon_off_mm > request.tolerance_mm:
+        yield (
+            f"with {request.joints} joints the polygon is {polygon_off_mm:.1f} mm off the profile, "
+            f"beyond --tolerance {request.tolerance_mm:g}"
+        )
+    depth = depth_inside(shape, subject.profile)
+    if depth > request.tolerance_mm:
+        yield f"the tube would press up to {depth:.1f} mm into the object"
+    if meets_itself(shape):
+        yield "the bent tube runs into itself"

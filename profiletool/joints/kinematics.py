@@ -106,6 +106,24 @@ def _sample(edges: FloatArray, rates: FloatArray) -> tuple[FloatArray, FloatArra
     return along, turn, speed
 
 
+def depth_inside(shape: Shape, profile: Profile) -> float:
+    """How deep the object-facing line lies inside the object at most, mm; 0 where it does not."""
+    target = shapely.LineString(profile.points)
+    beside = shapely.line_locate_point(target, shapely.points(shape.facing))
+    at = np.searchsorted(profile.s, beside * (profile.length_mm / target.length))
+    at = np.clip(at, 0, len(profile.s) - 1)
+    inside = (beside > 0.0) & (beside < target.length)
+    away = shape.facing - profile.points[at]
+    heading = profile.heading[at]
+    inward = profile.sign * (np.cos(heading) * away[:, 1] - np.sin(heading) * away[:, 0])
+    return float(np.max(inward, where=inside, initial=0.0))
+
+
+def meets_itself(shape: Shape) -> bool:
+    """Whether the bent tube runs into itself."""
+    return not shapely.LinearRing(np.concatenate([shape.facing, shape.far[::-1]])).is_simple
+
+
 def misfit(shape: Shape, profile: Profile) -> Misfit:
     """Distance between the object-facing line and the target profile, both ways.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
 
@@ -22,11 +22,12 @@ def shortfalls(
     material: Material,
     formula: Formula,
     count: int | None,
+    place: Callable[[float], str],
 ) -> tuple[str, ...]:
     """Reasons why a design is beyond the physical limits; none where it is within them.
 
     Where a number of joints was asked for (``count``), a polygon off the tolerance is what the
-    user chose, not a limit.
+    user chose, not a limit. ``place`` says in words where an arc length on the profile is.
     """
     reasons = []
     tube = (material.outer_diameter_mm, material.wall_mm)
@@ -39,10 +40,8 @@ def shortfalls(
     if count is not None and len(sectors) < count:
         reasons.append(f"there is no room for {count} joints on this profile, only {len(sectors)}")
     for number, sector in enumerate(sectors, start=1):
-        place = f"joint {number}, {sector.centre:.0f} mm down the profile"
-        reasons += [f"{place}: {what}" for what in _missing(sector, rules)]
-        if count is None:
-            reasons += [f"{place}: {what}" for what in _off(sector, rules)]
+        found = [*_missing(sector, rules), *(_off(sector, rules) if count is None else ())]
+        reasons += [f"joint {number}, {place(sector.centre)}: {what}" for what in found]
     if layout.length_mm > material.max_length_mm + _SLACK:
         reasons.append(
             f"the tube would be {layout.length_mm:.1f} mm long, more than "
@@ -75,12 +74,14 @@ def _off(sector: Sector, rules: Rules) -> Iterator[str]:
     if sector.deviation_mm > rules.tolerance_mm:
         yield (
             f"the polygon is {sector.deviation_mm:.2f} mm off the profile, more than the "
-            f"tolerance of {rules.tolerance_mm:g} mm"
+            f"tolerance of {rules.tolerance_mm:g} mm; raise --tolerance, or leave this place out "
+            "with --from or --to"
         )
     elif sector.inward_mm > rules.interference_mm:
         yield (
             f"the polygon runs {sector.inward_mm:.2f} mm into the object, more than "
-            f"{rules.interference_mm:g} mm"
+            f"{rules.interference_mm:g} mm; give some --clearance, or leave this place out with "
+            "--from or --to"
         )
 
 
@@ -104,20 +105,28 @@ def warnings(
             f"formula (9) reads low above {_FORMULA_LOW_ABOVE_BAR:g} bar: expect the joints to "
             f"bend more than it says at {layout.pressure_bar:.2f} bar"
         )
-    for joint in layout.joints:
-        excess = joint.theta_formula_deg - joint.theta_target_deg
-        if excess > NEAR_DEG:
-            found.append(
-                f"joint {joint.number} bends {excess:.1f} deg more than wanted: the table has "
-                f"nothing closer at {layout.pressure_bar:.2f} bar"
-            )
-    share = float(np.mean(profile.bridged))
-    if share > 0.0:
-        found.append(f"{100.0 * share:.0f} % of the profile is bridged: grooves too tight to enter")
+    eager = [j for j in layout.joints if j.theta_formula_deg - j.theta_target_deg > NEAR_DEG]
+    if eager:
+        worst = max(j.theta_formula_deg - j.theta_target_deg for j in eager)
+        found.append(
+            f"{named(j.number for j in eager)} will bend up to {worst:.1f} deg more than wanted: "
+            f"the look-up rounds up, and the table is coarse at {layout.pressure_bar:.2f} bar"
+        )
+    share = 100.0 * float(np.mean(profile.bridged))
+    if share >= 0.5:
+        found.append(f"{share:.0f} % of the profile is bridged: grooves too tight to enter")
     if fit.max_mm > tolerance_mm:
         found.append(
             f"the bent shape is predicted up to {fit.max_mm:.1f} mm off the profile "
-            f"(RMS {fit.rms_mm:.1f} mm): the paper's method takes lengths off the drawing and "
-            "does not correct them"
+            f"(RMS {fit.rms_mm:.1f} mm): the paper's method rounds angles up, takes lengths off "
+            "the drawing and corrects neither"
         )
     return tuple(found)
+
+
+def named(numbers: Iterable[int]) -> str:
+    """Name joints by their numbers: "joint 2", "joints 2, 3 and 5"."""
+    words = [str(number) for number in numbers]
+    if len(words) == 1:
+        return f"joint {words[0]}"
+    return f"joints {', '.join(words[:-1])} and {words[-1]}"

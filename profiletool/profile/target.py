@@ -18,7 +18,8 @@ STEP_MM = 0.1  # spacing of a profile's points
 _LEAST_WINDOW = 0.2  # of the tube's radius: what is shorter is nothing to a tube
 _UNDERCUT = np.sin(np.radians(20.0))  # normals steeper down than this face the base
 _STRAIGHT_DOWN = np.cos(np.radians(45.0))
-_LONGEST_MM = 3000.0  # twelve times the longest tube: the scale must be wrong
+_MOST_LOST = 0.8  # of a drawn line: what is left when more is bridged is another curve
+_LONGEST_MM = 1000.0  # four times the longest tube: the scale must be wrong
 _BRIDGED_MM = 0.1  # a gap that counts as bridged, where noise does not ask for more
 
 
@@ -75,8 +76,17 @@ def profile_of_line(points: FloatArray, reach: Reach) -> Profile:
     if drop < -0.01 * arc_length(points)[-1]:
         points = points[::-1]
     toward = side_sign(reach.side)
+    _check_length(float(arc_length(points)[-1]), reach)
     line = reachable_line(points, reach.radius_mm, reach.clearance_mm, toward)
-    return _profile(Stretch(line, 0.0, float(arc_length(line)[-1])), reach, None)
+    length, drawn = float(arc_length(line)[-1]), float(arc_length(points)[-1])
+    if length < _MOST_LOST * drawn:
+        raise NoObject(
+            f"on its {reach.side} a tube can follow only {length:.0f} of the {drawn:.0f} mm drawn; "
+            "take the other --side or a thinner tube"
+        )
+    profile = _profile(Stretch(line, 0.0, length), reach, None)
+    gap = shapely.distance(shapely.points(profile.points), shapely.LineString(points))
+    return replace(profile, bridged=gap > reach.clearance_mm + _BRIDGED_MM)
 
 
 def _window(reach: Reach) -> float:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from profiletool.joints.kinematics import Bend, Shape
 from profiletool.joints.sectors import Sector
 from profiletool.profile.offset import offset_curve, offset_points
-from profiletool.records import Design, FloatArray, Profile
+from profiletool.records import Design, FloatArray, Picture, Profile
 
 # Okabe and Ito's palette: told apart by colour-blind readers too.
 INK, BLUE, SKY, GREEN, RED, YELLOW = (
@@ -30,6 +30,7 @@ _DPI = 130
 _LONGEST_PX = 1000  # the picture is shown no finer than the figure resolves
 _MARGIN_MM = 12.0
 _SCALE_BAR_MM = 20.0
+_LABEL_MM = 8.0  # room that a label takes
 
 
 @dataclass(frozen=True)
@@ -56,16 +57,21 @@ class Scene:
     straight: Shape
 
 
-def backdrop_of(
-    rgb: NDArray[np.uint8], mm_per_px: float, origin_px: tuple[float, float]
-) -> Backdrop:
-    """Place a picture in the object frame, thinned to what the figure resolves."""
-    height, width = rgb.shape[:2]
+def backdrop_of(picture: Picture, mm_per_px: float, origin_px: tuple[float, float]) -> Backdrop:
+    """Place a picture in the object frame, thinned to what the figure resolves.
+
+    What is transparent is shown white.
+    """
+    height, width = picture.rgb.shape[:2]
     every = max(1, round(max(height, width) / _LONGEST_PX))
     x, y = origin_px
     extent = np.array([-0.5 - x, width - 0.5 - x, y - height + 0.5, y + 0.5]) * mm_per_px
     left, right, bottom, top = extent.tolist()
-    return Backdrop(rgb[::every, ::every], (left, right, bottom, top))
+    rgb = picture.rgb[::every, ::every]
+    if picture.alpha is not None:
+        cover = picture.alpha[::every, ::every, None] / 255.0
+        rgb = np.rint(255.0 - (255.0 - rgb) * cover).astype(np.uint8)
+    return Backdrop(rgb, (left, right, bottom, top))
 
 
 def draw_overlay(scene: Scene) -> bytes:
@@ -188,20 +194,30 @@ def _draw_profile(axes: Any, scene: Scene) -> None:
 
 def _draw_joints(axes: Any, scene: Scene) -> None:
     profile, diameter = scene.profile, scene.design.tube.outer_diameter_mm
-    outer = offset_points(profile, diameter + 6.0)
-    inner = offset_points(profile, -7.0)
+    badges = [offset_points(profile, diameter * k) for k in (1.3, 1.65, 0.5, 0.8, 2.0)]
+    angles = [offset_points(profile, -diameter * k) for k in (0.35, 0.7, 1.05, 1.4)]
+    taken: list[FloatArray] = []
     for sector, joint in zip(scene.sectors, scene.design.joints, strict=True):
         at = int(np.searchsorted(profile.s, sector.centre))
         axes.text(
-            *outer[at], str(joint.number), color="white", fontsize=11, weight="bold",
-            ha="center", va="center", zorder=9,
+            *_free_place([curve[at] for curve in badges], taken), str(joint.number),
+            color="white", fontsize=11, weight="bold", ha="center", va="center", zorder=9,
             bbox={"boxstyle": "circle,pad=0.28", "fc": RED, "ec": "white", "lw": 1.2},
         )  # fmt: skip
         axes.text(
-            *inner[at], f"{joint.sense * joint.theta_formula_deg:.0f}°",
-            color=INK, fontsize=10.5, weight="bold",
-            ha="center", va="center", zorder=9, path_effects=_halo(3.0),
+            *_free_place([curve[at] for curve in angles], taken),
+            f"{joint.sense * joint.theta_formula_deg:.0f}°", color=INK, fontsize=10.5,
+            weight="bold", ha="center", va="center", zorder=9, path_effects=_halo(3.0),
         )  # fmt: skip
+
+
+def _free_place(places: Sequence[FloatArray], taken: list[FloatArray]) -> FloatArray:
+    """Take the first place that no label has yet, or the one farthest from all labels."""
+    room = [min((float(np.hypot(*(p - q))) for q in taken), default=np.inf) for p in places]
+    free = [k for k, distance in enumerate(room) if distance >= _LABEL_MM]
+    chosen = places[free[0] if free else int(np.argmax(room))]
+    taken.append(chosen)
+    return chosen
 
 
 def _draw_scale_bar(axes: Any, limits: tuple[float, float, float, float]) -> None:
@@ -283,15 +299,22 @@ def _draw_legend(axes: Any, scene: Scene, y: float) -> float:
     )  # fmt: skip
     for line in legend.get_lines():
         line.set_path_effects([])
-    return y - 0.026 * len(labels) - 0.045
+    return y - 0.0235 * len(labels) - 0.03
 
 
 def _draw_warnings(axes: Any, design: Design, y: float) -> None:
-    for warning in design.warnings:
+    for shown, warning in enumerate(design.warnings):
         lines = textwrap.wrap("• " + warning, 58, subsequent_indent="   ")
         height = 0.0205 * len(lines)
         if y - height < 0.02:
-            axes.text(0.03, y, "• more in design.json", fontsize=8.5, color=GREY, va="top")
+            axes.text(
+                0.03,
+                y,
+                f"• {len(design.warnings) - shown} more in design.json",
+                fontsize=8.5,
+                color=GREY,
+                va="top",
+            )
             return
         axes.text(0.03, y, "\n".join(lines), fontsize=8.5, color=GREY, va="top", linespacing=1.25)
         y -= height + 0.008

@@ -14,7 +14,7 @@ _COLUMNS = ("pressure_bar", "openF_mm", "alpha_closed_deg", "theta_deg")
 def joint_table(design: Design) -> str:
     """Lay out the joints of a design as the paper's Table 5."""
     lines = [
-        f"{design.source.file}: {len(design.joints)} joints at {design.pressure_bar:.2f} bar, "
+        f"{design.source.file}: {_counted(len(design.joints))} at {design.pressure_bar:.2f} bar, "
         f"tube {design.tube.length_mm:.1f} mm long, root {design.tube.root_mm:.1f} mm",
         "joint    F mm  openF mm  alpha_closed deg  alpha_center deg  theta deg  formula deg",
     ]
@@ -26,6 +26,10 @@ def joint_table(design: Design) -> str:
     fit = design.fit.formula
     lines.append(f"predicted off the profile: {fit.rms_mm:.1f} mm RMS, {fit.max_mm:.1f} mm at most")
     return "\n".join(lines) + "\n"
+
+
+def _counted(joints: int) -> str:
+    return "1 joint" if joints == 1 else f"{joints} joints"
 
 
 def theta_text(table: Table) -> str:

@@ -22,9 +22,13 @@ T = np.linspace(0.0, 2.0 * np.pi, 1441)[:-1]
 ROUND = profile_of_object(30.0 * np.column_stack([np.cos(T), np.sin(T)]), Reach("left", 10.0))
 
 
+def place(s: float) -> str:
+    return f"{s:.0f} mm down"
+
+
 def reasons(sector: Sector = GOOD, layout: Layout = LAYOUT, **options: object) -> tuple[str, ...]:
     material = options.get("material", MATERIAL)
-    return shortfalls([sector], layout, RULES, material, PAPER, options.get("count"))
+    return shortfalls([sector], layout, RULES, material, PAPER, options.get("count"), place)
 
 
 def test_a_good_design_has_none() -> None:
@@ -43,7 +47,7 @@ def test_a_good_design_has_none() -> None:
 )
 def test_what_a_joint_misses_and_where(change: dict[str, float], says: str) -> None:
     (reason,) = reasons(replace(GOOD, **change))
-    assert reason.startswith("joint 1, 12 mm down the profile: ")
+    assert reason.startswith("joint 1, 12 mm down: ")
     with pytest.raises(AssertionError, match=says):
         raise AssertionError(reason)
 
@@ -76,7 +80,7 @@ def test_warnings_come_with_their_cause_only() -> None:
     assert noted(quiet) == ""
     assert "reads low above 1.2 bar" in noted(replace(LAYOUT, pressure_bar=1.3))
     eager = replace(JOINT, theta_formula_deg=32.1)
-    assert "joint 1 bends 2.1 deg more" in noted(replace(quiet, joints=(eager,)))
+    assert "joint 1 will bend up to 2.1 deg more" in noted(replace(quiet, joints=(eager,)))
     assert "up to 1.1 mm off" in noted(quiet, Misfit(0.4, 1.1))
     bridged = replace(ROUND, bridged=np.arange(len(ROUND.s)) < 0.25 * len(ROUND.s))
     assert "25 % of the profile is bridged" in noted(quiet, profile=bridged)

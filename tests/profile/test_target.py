@@ -28,7 +28,7 @@ def test_convex_counts_positive_on_both_sides() -> None:
     assert right.sign * (right.heading[-1] - right.heading[0]) > 0.0
 
 
-@given(st.floats(0, 40), st.floats(60, 100))
+@given(st.floats(0, 30), st.floats(70, 100))
 def test_from_and_to_are_shares_of_the_arc_length(start: float, end: float) -> None:
     whole = profile_of_object(CIRCLE, Reach("left", 10.0))
     part = profile_of_object(CIRCLE, Reach("left", 10.0, start_pct=start, end_pct=end))

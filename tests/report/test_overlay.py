@@ -13,6 +13,7 @@ from PIL import Image
 
 from profiletool.artifacts import scene_of
 from profiletool.pipeline import Request, run
+from profiletool.records import Picture
 from profiletool.report.overlay import Scene, backdrop_of, draw_overlay
 
 GOLDEN = Path(__file__).parents[1] / "golden"
@@ -67,10 +68,17 @@ def test_a_tube_a_millimetre_off_is_seen(bulb: Scene) -> None:
 
 
 def test_the_picture_lies_in_the_object_frame() -> None:
-    rgb = np.zeros((40, 20, 3), np.uint8)
-    backdrop = backdrop_of(rgb, 0.5, (9.5, 4.5))
-    assert backdrop.extent == (-5.0, 5.0, -17.5, 2.5)
-    assert backdrop_of(np.zeros((4000, 2000, 3), np.uint8), 0.5, (0.0, 0.0)).rgb.shape[0] <= 1400
+    picture = Picture(np.zeros((40, 20, 3), np.uint8), None, None, "PNG")
+    assert backdrop_of(picture, 0.5, (9.5, 4.5)).extent == (-5.0, 5.0, -17.5, 2.5)
+    large = Picture(np.zeros((4000, 2000, 3), np.uint8), None, None, "PNG")
+    assert backdrop_of(large, 0.5, (0.0, 0.0)).rgb.shape[0] <= 1400
+
+
+def test_what_is_transparent_is_white() -> None:
+    alpha = np.array([[0, 255], [128, 0]], np.uint8)
+    picture = Picture(np.full((2, 2, 3), 40, np.uint8), alpha, None, "PNG")
+    grey = backdrop_of(picture, 0.5, (0.0, 0.0)).rgb[..., 0]
+    assert grey.tolist() == [[255, 40], [147, 255]]
 
 
 def test_an_infeasible_design_says_so(bulb: Scene) -> None:
