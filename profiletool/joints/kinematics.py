@@ -108,7 +108,7 @@ def _sample(edges: FloatArray, rates: FloatArray) -> tuple[FloatArray, FloatArra
 
 def depth_inside(shape: Shape, profile: Profile) -> float:
     """How deep the object-facing line lies inside the object at most, mm; 0 where it does not."""
-    target = shapely.LineString(profile.points)
+    target = _target_line(profile)
     beside = shapely.line_locate_point(target, shapely.points(shape.facing))
     at = np.searchsorted(profile.s, beside * (profile.length_mm / target.length))
     at = np.clip(at, 0, len(profile.s) - 1)
@@ -117,6 +117,12 @@ def depth_inside(shape: Shape, profile: Profile) -> float:
     heading = profile.heading[at]
     inward = profile.sign * (np.cos(heading) * away[:, 1] - np.sin(heading) * away[:, 0])
     return float(np.max(inward, where=inside, initial=0.0))
+
+
+def _target_line(profile: Profile) -> shapely.LineString:
+    """Thin a profile for distances: at half a millimetre an arc of 10 mm is right to 0.003 mm."""
+    every = np.append(np.arange(0, len(profile.s) - 1, 5), len(profile.s) - 1)
+    return shapely.LineString(profile.points[every])
 
 
 def meets_itself(shape: Shape) -> bool:
@@ -130,7 +136,7 @@ def misfit(shape: Shape, profile: Profile) -> Misfit:
     Every point of the profile counts with its distance to the line, and every point of the line
     with its distance to the profile, but for what lies beyond the profile's ends.
     """
-    line, target = shapely.LineString(shape.facing), shapely.LineString(profile.points)
+    line, target = shapely.LineString(shape.facing), _target_line(profile)
     shapely.prepare([line, target])
     to_line = shapely.distance(shapely.points(profile.points), line)
     points = shapely.points(shape.facing)
