@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+import sys
 import tomllib
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, cast
 
 import typer
 
@@ -34,14 +35,32 @@ design_app = typer.Typer(
 )
 
 
+# What typer raises for words it cannot take; its own base classes have no public name.
+_BadUsage = cast(type[typer.BadParameter], typer.BadParameter.__bases__[0])
+
+
 def main() -> None:
     """Run `profiletool`."""
-    app()
+    _run(app)
 
 
 def design_main() -> None:
     """Run `design`, which is `profiletool design`."""
-    design_app()
+    _run(design_app)
+
+
+def _run(commands: typer.Typer) -> None:
+    """Run a command line; bad usage ends in one line too."""
+    try:
+        code = commands(standalone_mode=False)
+    except typer.Abort:
+        code = 130
+    except _BadUsage as problem:
+        code = UsageError.exit_code
+        message = problem.format_message().replace("Value error, ", "").rstrip(".")
+        # No arguments at all: the message is the help page.
+        typer.echo(message if "\n" in message else f"error: {message}; see --help", err=True)
+    sys.exit(code or 0)
 
 
 @contextmanager

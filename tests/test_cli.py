@@ -12,7 +12,7 @@ import pytest
 from PIL import Image, ImageDraw
 from typer.testing import CliRunner, Result
 
-from profiletool.cli import app
+from profiletool.cli import app, design_main, main
 
 REST = "finger_rest.csv"
 
@@ -363,3 +363,39 @@ def test_a_fault_of_ours_is_one_line_too(monkeypatch: pytest.MonkeyPatch, sample
     result = call("design", samples / REST)
     assert result.exit_code == 1
     assert "fault in profiletool (RuntimeError: two lines)" in error_of(result)
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        ([], "Missing argument 'PICTURE'"),
+        (["x.png", "--side", "up"], "'up' is not one of 'left', 'right'"),
+        (["x.png", "--height", "tall"], "--height"),
+        (["x.png", "--bad"], "--bad"),
+    ],
+)
+def test_bad_usage_is_one_line(
+    words: list[str],
+    says: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setattr(sys, "argv", ["design", *words])
+    with pytest.raises(SystemExit) as ended:
+        design_main()
+    assert ended.value.code == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("error: ")
+    assert line.endswith("; see --help")
+    assert says in line
+
+
+def test_exit_codes_pass_through(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for words, code in ((["design", "absent.png"], 3), (["table"], 0), ([], 2), (["--help"], 0)):
+        monkeypatch.setattr(sys, "argv", ["profiletool", *words])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        assert ended.value.code == code
+    assert "Commands:" in capsys.readouterr().out
