@@ -12,7 +12,8 @@ from formula.errors import OutOfRange
 from formula.table import PRESSURES_BAR, Table, assign, make_table
 from formula.theta import Formula
 from profiletool.joints.kinematics import Bend, facing_stretch
-from profiletool.joints.sectors import Rules, Sector
+from profiletool.joints.pieces import Rules
+from profiletool.joints.sectors import Sector
 from profiletool.profile.offset import offset_points
 from profiletool.records import (
     AWAY_DEG,

@@ -8,7 +8,8 @@ import numpy as np
 
 from formula.theta import Formula
 from profiletool.joints.assign import NEAR_DEG, Layout
-from profiletool.joints.sectors import Rules, Sector
+from profiletool.joints.pieces import Rules
+from profiletool.joints.sectors import Sector
 from profiletool.records import Material, Misfit, Profile
 
 _FORMULA_LOW_ABOVE_BAR = 1.2

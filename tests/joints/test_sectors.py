@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from profiletool.joints.sectors import Rules, Sector, discretise
+from profiletool.joints.pieces import Rules
+from profiletool.joints.sectors import Sector, discretise
 from profiletool.profile.target import Reach, profile_of_line, profile_of_object
 from profiletool.records import Profile
 

@@ -8,6 +8,8 @@ import shapely
 from PIL import Image
 from scipy.ndimage import map_coordinates
 
+from profiletool.designfile import to_json
+
 SAMPLES = Path(__file__).parents[2] / "samples"
 NAMES = ("bulb", "pear", "egg", "bottle", "vase")
 SIZES = {  # width where it is said, height
@@ -179,3 +181,10 @@ def test_finger_rest_is_a_bendable_open_line():
     assert curvature.min() < -0.02
     assert curvature.max() > 0.02
     assert np.abs(curvature).max() < 1 / 25
+
+
+def test_the_papers_bulb_is_what_its_script_writes():
+    spec = importlib.util.spec_from_file_location("paper_bulb", SAMPLES / "paper_bulb.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    assert to_json(module.paper_bulb()) == (SAMPLES / "paper_bulb.json").read_text()
