@@ -79,12 +79,12 @@ class Pieces:
 
 
 def direction(heading: float | FloatArray) -> FloatArray:
-    """Unit vectors of headings in rad: (...) -> (..., 2)."""
+    """Give unit vectors of headings in rad: (...) -> (..., 2)."""
     return np.stack([np.cos(heading), np.sin(heading)], axis=-1)
 
 
 def cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Cross product in the plane, positive where b points left of a: (..., 2) -> (...)."""
+    """Give the cross product in the plane, positive where b points left of a: (..., 2) -> (...)."""
     return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
 
 
