@@ -106,3 +106,8 @@ def test_default_rows_follow_the_range_of_the_formula() -> None:
     assert table.pressures_bar[-1] == 1.5
     with pytest.raises(OutOfRange, match="none of"):
         make_table(replace(PAPER, openF_range_mm=(20.0, 30.0)))
+
+
+def test_of_equal_leads_the_row_of_the_shortest_cut_is_taken() -> None:
+    table = small([[[20.5, 12.0], [22.0, 13.0]], [[21.0, 15.0], [20.1, 16.0]]])
+    assert assign(table, [8, 6], [20.0, 20.0]).pressure_bar == 1.0

@@ -146,3 +146,11 @@ def test_a_coarser_gauze_keeps_one_mesh_between_windows(circle: Profile) -> None
     pair = [sector(40.0, 25.0, 9.0, (-9.0, 30.0)), sector(41.0, 25.0, 9.0, (0.0, 0.0))]
     assert lay_out(circle, pair, table, coarse).joints[0].F_mm == 9.0 + 3.0
     assert joint_rules(table, coarse, 1.0).wrap_mm == 3.0
+
+
+def test_the_joint_that_sets_the_pressure_keeps_its_cut(circle: Profile) -> None:
+    # 29 deg at 6 mm asks for 1.9 bar, where 14 mm has nothing near 30 deg, but 8 mm would.
+    pair = [sector(15.0, 30.0, 14.0, (-9.0, 30.0)), sector(50.0, 29.0, 6.0, (0.0, 0.0))]
+    lead, other = lay_out(circle, pair, TABLE, MATERIAL).joints
+    assert (lead.openF_mm, other.openF_mm) == (14.0, 6.0)
+    assert lead.theta_formula_deg - 30.0 > 2.0

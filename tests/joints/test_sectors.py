@@ -181,3 +181,10 @@ def test_a_long_profile_stays_quick() -> None:
     grid_free = bent_line(*waves)
     assert grid_free.length_mm > 950.0
     assert discretise(grid_free, RULES)
+
+
+def test_beyond_the_tolerance_joints_must_be_worth_their_while() -> None:
+    sharp = discretise(bent_line((50.0, 0.0), (1.0, 90.0), (50.0, 0.0)), RULES)
+    assert len(sharp) <= 2
+    rough = bent_line((20, 0), (2, 60), (2, -55), (2, 60), (2, -55), (60, 0))
+    assert len(discretise(rough, RULES)) <= 5

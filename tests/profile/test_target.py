@@ -39,7 +39,7 @@ def test_from_and_to_are_shares_of_the_arc_length(start: float, end: float) -> N
 
 def test_the_corner_to_the_base_is_left_out() -> None:
     profile = profile_of_object(BOX, Reach("left", 10.0))
-    assert np.degrees(profile.heading[-1]) == pytest.approx(270.0, abs=1.0)
+    assert np.degrees(profile.heading[-1]) == pytest.approx(270.0, abs=0.1)
     assert 0.0 < profile.points[-1, 1] < 5.0
 
 
