@@ -17,8 +17,8 @@ from profiletool.image.marker import find_markers
 from profiletool.image.scale import ScaleRequest, scale_of
 from profiletool.image.silhouette import find_silhouette
 from profiletool.joints.assign import Layout, joint_rules, lay_out, theta_table
-from profiletool.joints.kinematics import Shape, deform, depth_inside, meets_itself, misfit
-from profiletool.joints.limits import named, shortfalls, warnings
+from profiletool.joints.kinematics import Shape, deform, misfit
+from profiletool.joints.limits import named, shape_warnings, shortfalls, warnings
 from profiletool.joints.sectors import Sector, discretise
 from profiletool.profile.side import top_middle
 from profiletool.profile.target import Reach, profile_of_line, profile_of_object
@@ -238,7 +238,7 @@ def _design(
     gauze = Gauze(material.pitch_mm, material.thread_mm, material.turns, seam.seam_deg)
     notes = [*reasons, *_drawing_notes(request, subject)]
     notes += warnings(layout, profile, fit, request.tolerance_mm, material, formula)
-    notes += _shape_notes(request, subject, shape, max(s.deviation_mm for s in sectors))
+    notes += shape_warnings(sectors, shape, profile, request.tolerance_mm, request.joints)
     notes += _gauze_notes(layout, gauze, seam)
     notes.append("NOT VERIFIED: no finite-element run has checked this design")
     return Design(
@@ -289,19 +289,3 @@ def _gauze_notes(layout: Layout, gauze: Gauze, seam: SeamChoice) -> Iterator[str
     ):
         if numbers:
             yield what.format(named(numbers))
-
-
-def _shape_notes(
-    request: Request, subject: Subject, shape: Shape, polygon_off_mm: float
-) -> Iterator[str]:
-    """Say what is wrong with the bent shape."""
-    if request.joints is not None and polygon_off_mm > request.tolerance_mm:
-        yield (
-            f"with {request.joints} joints the polygon is {polygon_off_mm:.1f} mm off the profile, "
-            f"beyond --tolerance {request.tolerance_mm:g}"
-        )
-    depth = depth_inside(shape, subject.profile)
-    if depth > request.tolerance_mm:
-        yield f"the tube would press up to {depth:.1f} mm into the object"
-    if meets_itself(shape):
-        yield "the bent tube runs into itself"

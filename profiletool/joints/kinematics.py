@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from profiletool.records import FloatArray, Misfit, Pose, Profile
 
@@ -106,17 +106,38 @@ def _sample(edges: FloatArray, rates: FloatArray) -> tuple[FloatArray, FloatArra
     return along, turn, speed
 
 
+def misfit(shape: Shape, profile: Profile) -> Misfit:
+    """Distance between the object-facing line and the target profile, both ways.
+
+    Every point of the profile counts with its distance to the line, and every point of the line
+    with its distance to the profile, but for what lies beyond the profile's ends; both ways weigh
+    the same.
+    """
+    line, target = shapely.LineString(shape.facing), _target_line(profile)
+    shapely.prepare([line, target])
+    to_line = shapely.distance(shapely.points(profile.points), line)
+    _, inside = _beside(shape, target)
+    to_target = shapely.distance(shapely.points(shape.facing[inside]), target)
+    ways = [way for way in (to_line, to_target) if len(way)]
+    rms = np.sqrt(np.mean([np.mean(way**2) for way in ways]))
+    return Misfit(float(rms), float(max(way.max() for way in ways)))
+
+
 def depth_inside(shape: Shape, profile: Profile) -> float:
     """How deep the object-facing line lies inside the object at most, mm; 0 where it does not."""
     target = _target_line(profile)
-    beside = shapely.line_locate_point(target, shapely.points(shape.facing))
-    at = np.searchsorted(profile.s, beside * (profile.length_mm / target.length))
+    along, inside = _beside(shape, target)
+    at = np.searchsorted(profile.s, along * (profile.length_mm / target.length))
     at = np.clip(at, 0, len(profile.s) - 1)
-    inside = (beside > 0.0) & (beside < target.length)
     away = shape.facing - profile.points[at]
     heading = profile.heading[at]
     inward = profile.sign * (np.cos(heading) * away[:, 1] - np.sin(heading) * away[:, 0])
     return float(np.max(inward, where=inside, initial=0.0))
+
+
+def meets_itself(shape: Shape) -> bool:
+    """Whether the bent tube runs into itself."""
+    return not shapely.LinearRing(np.concatenate([shape.facing, shape.far[::-1]])).is_simple
 
 
 def _target_line(profile: Profile) -> shapely.LineString:
@@ -125,30 +146,7 @@ def _target_line(profile: Profile) -> shapely.LineString:
     return shapely.LineString(profile.points[every])
 
 
-def meets_itself(shape: Shape) -> bool:
-    """Whether the bent tube runs into itself."""
-    return not shapely.LinearRing(np.concatenate([shape.facing, shape.far[::-1]])).is_simple
-
-
-def misfit(shape: Shape, profile: Profile) -> Misfit:
-    """Distance between the object-facing line and the target profile, both ways.
-
-    Every point of the profile counts with its distance to the line, and every point of the line
-    with its distance to the profile, but for what lies beyond the profile's ends.
-    """
-    line, target = shapely.LineString(shape.facing), _target_line(profile)
-    shapely.prepare([line, target])
-    to_line = shapely.distance(shapely.points(profile.points), line)
-    points = shapely.points(shape.facing)
-    beside = shapely.line_locate_point(target, points)
-    inside = (beside > 0.0) & (beside < target.length)
-    to_target = shapely.distance(points, target)[inside]
-    both = np.concatenate([to_line, to_target])
-    weights = np.concatenate(
-        [
-            np.full(len(to_line), 0.5 / len(to_line)),
-            np.full(len(to_target), 0.5 / max(len(to_target), 1)),
-        ]
-    )
-    rms = np.sqrt(np.sum(weights * both**2) / np.sum(weights))
-    return Misfit(float(rms), float(both.max()))
+def _beside(shape: Shape, target: shapely.LineString) -> tuple[FloatArray, NDArray[np.bool_]]:
+    """Where along the target each point of the facing line lies, and whether beyond neither end."""
+    along = np.asarray(shapely.line_locate_point(target, shapely.points(shape.facing)))
+    return along, (along > 0.0) & (along < target.length)

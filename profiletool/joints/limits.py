@@ -8,6 +8,7 @@ import numpy as np
 
 from formula.theta import Formula
 from profiletool.joints.assign import NEAR_DEG, Layout
+from profiletool.joints.kinematics import Shape, depth_inside, meets_itself
 from profiletool.joints.pieces import Rules
 from profiletool.joints.sectors import Sector
 from profiletool.records import Material, Misfit, Profile
@@ -123,6 +124,27 @@ def warnings(
             "the drawing and corrects neither"
         )
     return tuple(found)
+
+
+def shape_warnings(
+    sectors: Sequence[Sector],
+    shape: Shape,
+    profile: Profile,
+    tolerance_mm: float,
+    count: int | None,
+) -> Iterator[str]:
+    """Say what is wrong with the polygon that was asked for, and with the bent shape."""
+    off = max(sector.deviation_mm for sector in sectors)
+    if count is not None and off > tolerance_mm:
+        yield (
+            f"with --joints {count} the polygon is {off:.1f} mm off the profile, "
+            f"beyond --tolerance {tolerance_mm:g}"
+        )
+    depth = depth_inside(shape, profile)
+    if depth > tolerance_mm:
+        yield f"the tube would press up to {depth:.1f} mm into the object"
+    if meets_itself(shape):
+        yield "the bent tube runs into itself"
 
 
 def named(numbers: Iterable[int]) -> str:

@@ -8,7 +8,15 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from profiletool.joints.kinematics import PIVOT_SHARE, Bend, deform, facing_stretch, misfit
+from profiletool.joints.kinematics import (
+    PIVOT_SHARE,
+    Bend,
+    deform,
+    depth_inside,
+    facing_stretch,
+    meets_itself,
+    misfit,
+)
 from profiletool.profile.target import Reach, profile_of_object
 from profiletool.records import Pose
 
@@ -118,3 +126,21 @@ def test_misfit_looks_from_the_line_too() -> None:
     line = shapely.LineString([(x, y), end])
     to_line = shapely.distance(shapely.points(profile.points), line)
     assert straight.rms_mm != pytest.approx(float(np.sqrt(np.mean(to_line**2))), rel=0.02)
+
+
+@pytest.mark.parametrize(("side", "heading"), [("left", 180.0), ("right", 0.0)])
+def test_depth_inside_the_object_has_a_sign(side: str, heading: float) -> None:
+    profile = profile_of_object(CIRCLE, Reach(side, 10.0, end_pct=50.0))
+    x, y = profile.points[0]
+    # A straight tube along the crown lies outside the circle; 3 mm lower it is 3 mm inside.
+    crown = Pose(float(x), float(y), heading)
+    assert depth_inside(deform([], 30.0, 10.0, crown, profile.sign), profile) < 0.05
+    lower = replace(crown, y_mm=crown.y_mm - 3.0)
+    inside = depth_inside(deform([], 30.0, 10.0, lower, profile.sign), profile)
+    assert inside == pytest.approx(3.0, abs=0.1)
+
+
+def test_a_tube_that_curls_up_meets_itself() -> None:
+    curl = [Bend(20.0 + 24.0 * k, 10.0, np.radians(50.0)) for k in range(9)]
+    assert meets_itself(deform(curl, 240.0, 10.0, ORIGIN, 1.0))
+    assert not meets_itself(deform(curl[:3], 240.0, 10.0, ORIGIN, 1.0))

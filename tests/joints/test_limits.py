@@ -7,7 +7,8 @@ import pytest
 
 from formula.theta import load_formula
 from profiletool.joints.assign import Layout, joint_rules, theta_table
-from profiletool.joints.limits import shortfalls, warnings
+from profiletool.joints.kinematics import deform
+from profiletool.joints.limits import named, shape_warnings, shortfalls, warnings
 from profiletool.joints.sectors import Sector
 from profiletool.profile.target import Reach, profile_of_object
 from profiletool.records import Joint, Material, Misfit, Pose
@@ -85,3 +86,19 @@ def test_warnings_come_with_their_cause_only() -> None:
     bridged = replace(ROUND, bridged=np.arange(len(ROUND.s)) < 0.25 * len(ROUND.s))
     assert "25 % of the profile is bridged" in noted(quiet, profile=bridged)
     assert "ends at 2 bar" in noted(quiet, material=replace(MATERIAL, max_pressure_bar=3.0))
+
+
+def test_what_is_wrong_with_the_shape() -> None:
+    x, y = ROUND.points[0]
+    outside = deform([], 60.0, 10.0, Pose(float(x), float(y), 180.0), ROUND.sign)
+    assert list(shape_warnings([GOOD], outside, ROUND, 1.0, None)) == []
+    lower = deform([], 60.0, 10.0, Pose(float(x), float(y) - 4.0, 180.0), ROUND.sign)
+    (pressed,) = shape_warnings([GOOD], lower, ROUND, 1.0, None)
+    assert "press up to 4.0 mm into the object" in pressed
+    (asked,) = shape_warnings([replace(GOOD, deviation_mm=2.5)], outside, ROUND, 1.0, 1)
+    assert "with --joints 1 the polygon is 2.5 mm off" in asked
+
+
+def test_joints_by_name() -> None:
+    assert named([2]) == "joint 2"
+    assert named([2, 3, 5]) == "joints 2, 3 and 5"
