@@ -1,0 +1,397 @@
+"""Forces and tangent of an actuator, and the factorisation of the tangent.
+
+The tangent is block tridiagonal over the rings. It is eliminated from both ends toward a ring in
+the middle, layer by layer as it is assembled: two threads share the work evenly, the whole matrix
+never exists, and the result does not depend on how many threads there are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem import gauze, solid
+from fem.gauze import Threads
+from fem.mesh import Mesh
+from fem.pattern import Pattern, Unknowns, make_pattern
+from fem.pivot import Pivot
+from fem.plug import Plug
+from fem.pressure import face_volumes
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+_CHUNK = 512  # bricks at a time, so that the arrays of one step stay in the cache
+
+
+@dataclass(frozen=True)
+class Forces:
+    """An actuator's state of force at given nodal positions.
+
+    Attributes
+    ----------
+    internal : (count,) N
+        Gradient of the stored energy by the unknowns.
+    volume_gradient : (count,) mm^2
+        Gradient of the enclosed volume: forces of a unit pressure.
+    energy : float, N mm
+        Stored in rubber and gauze (half of it in a half model).
+    volume : float, mm^3
+        Enclosed (half of it in a half model).
+    least_J : float
+        Smallest determinant of F. Where it is not above 0 a brick is turned inside out and all
+        else is NaN.
+    """
+
+    internal: FloatArray
+    volume_gradient: FloatArray
+    energy: float
+    volume: float
+    least_J: float
+
+    def residual(self, pressure: float) -> FloatArray:
+        """Unbalanced forces (count,), N."""
+        return self.internal - pressure * self.volume_gradient
+
+
+class Inverse:
+    """The factored tangent; holds until the system is factored anew."""
+
+    def __init__(self, system: System, version: int) -> None:
+        self._system = system
+        self._version = version
+
+    @property
+    def negative(self) -> int:
+        """How many negative eigenvalues the tangent has: 0 where the state is stable."""
+        return sum(pivot.negative for pivot in self._system.pivots())
+
+    def solve(self, rhs: FloatArray) -> FloatArray:
+        """Solve for right sides (k, count) or (count,)."""
+        if self._version != self._system.version:
+            raise RuntimeError("the tangent has been factored anew since")
+        return self._system.solve(np.atleast_2d(rhs)).reshape(rhs.shape)
+
+
+class System:
+    """The equations of one mesh.
+
+    Holds the arrays that every factorisation uses again; use one System in one thread at a time.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    threads : {1, 2}
+    """
+
+    def __init__(self, mesh: Mesh, threads: int = 2) -> None:
+        self.mesh = mesh
+        self.unknowns = Unknowns.of(mesh)
+        self.plug = Plug(mesh)
+        self.version = 0
+        middle = mesh.layers // 2
+        self.middle = middle
+        self._parts = (
+            _Part(mesh, self.unknowns, range(middle), from_root=True),
+            _Part(mesh, self.unknowns, range(middle, mesh.layers), from_root=False),
+        )
+        self._last = Pivot(len(self.unknowns.ring) if middle > 0 else 0)
+        self._pool = ThreadPoolExecutor(1) if threads > 1 else None
+
+    def close(self) -> None:
+        """Let the second thread go."""
+        if self._pool is not None:
+            self._pool.shutdown()
+            self._pool = None
+
+    def pivots(self) -> Iterable[Pivot]:
+        """All pivots of the present factorisation."""
+        for part in self._parts:
+            yield from part.pivots.values()
+        yield self._last
+
+    def _both(self, work: Callable[[_Part], object]) -> None:
+        root, tip = self._parts
+        if self._pool is None:
+            work(root)
+            work(tip)
+            return
+        other = self._pool.submit(work, tip)
+        try:
+            work(root)
+        finally:
+            other.result()
+
+    def forces(self, x: FloatArray) -> Forces:
+        """Forces at nodal positions x (layers + 1, ring + mid, 3), mm."""
+        self._both(lambda part: part.evaluate(x, 0.0, None))
+        return self._gather(x)
+
+    def factor(self, x: FloatArray, pressure: float) -> tuple[Forces, Inverse | None]:
+        """Forces and factored tangent at x under a pressure, MPa; None where least_J <= 0."""
+        self.version += 1
+        self._both(lambda part: part.evaluate(x, pressure, self.plug))
+        forces = self._gather(x)
+        if not forces.least_J > 0.0:
+            return forces, None
+        if self.middle > 0:
+            self._last.factorise(self._parts[0].next, self._parts[1].next)
+        return forces, Inverse(self, self.version)
+
+    def _gather(self, x: FloatArray) -> Forces:
+        root, tip = self._parts
+        least = min(root.least_J, tip.least_J)
+        if not least > 0.0:
+            void = np.full(self.unknowns.count, np.nan)
+            return Forces(void, void, np.nan, np.nan, least)
+        cap, cap_gradient = self.plug.cap_volume(x)
+        internal = self.restrict(x, root.internal + tip.internal)
+        gradient = self.restrict(x, root.gradient + tip.gradient)
+        gradient[-self.unknowns.plug :] += cap_gradient
+        energy, volume = root.energy + tip.energy, root.volume + tip.volume + cap
+        return Forces(internal, gradient, energy, volume, least)
+
+    def restrict(self, x: FloatArray, nodal: FloatArray) -> FloatArray:
+        """Nodal forces (layers + 1, ring + mid, 3) on the unknowns (count,)."""
+        u, ring = self.unknowns, self.mesh.ring
+        rows = nodal.reshape(len(nodal), -1)
+        return np.concatenate(
+            [
+                rows[1:-1, u.ring].ravel(),
+                rows[:-1, 3 * ring + u.mid].ravel(),
+                self.plug.motions(x).T @ rows[-1, : 3 * ring],
+            ]
+        )
+
+    def expand(self, x: FloatArray, values: FloatArray) -> FloatArray:
+        """Unknowns (count,) as nodal displacements (layers + 1, ring + mid, 3)."""
+        u, ring = self.unknowns, self.mesh.ring
+        nodal = np.zeros_like(x)
+        rows = nodal.reshape(len(x), -1)
+        rings, mids, plug = self.split(values[None])
+        rows[1:-1, u.ring] = rings[0]
+        rows[:-1, 3 * ring + u.mid] = mids[0]
+        rows[-1, : 3 * ring] = self.plug.motions(x) @ plug[0]
+        return nodal
+
+    def split(self, values: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Unknowns (k, count) as rings (k, layers - 1, .), mids (k, layers, .), plug (k, .)."""
+        u, k = self.unknowns, len(values)
+        rings = values[:, : u.rings].reshape(k, u.layers - 1, -1)
+        mids = values[:, u.rings : u.count - u.plug].reshape(k, u.layers, len(u.mid))
+        return rings, mids, values[:, u.count - u.plug :]
+
+    def solve(self, rhs: FloatArray) -> FloatArray:
+        """Solve with the present factorisation for rhs (k, count)."""
+        out = np.array(rhs)
+        rings, mids, plug = self.split(out)
+        carry: dict[_Part, FloatArray] = {}
+
+        def forward(part: _Part) -> None:
+            carry[part] = part.forward(rings, mids, plug)
+
+        self._both(forward)
+        middle = np.zeros((len(out), 0))
+        if self.middle > 0:
+            middle = rings[:, self.middle - 1] - sum(carry.values())
+            self._last.forward(middle)
+            self._last.backward(middle)
+            rings[:, self.middle - 1] = middle
+        self._both(lambda part: part.backward(rings, mids, plug, middle))
+        return out
+
+
+class _Part:
+    """The layers from one end of the tube to the middle, eliminated from the end inward."""
+
+    def __init__(self, mesh: Mesh, unknowns: Unknowns, layers: range, *, from_root: bool) -> None:
+        self.mesh, self.unknowns, self.from_root = mesh, unknowns, from_root
+        self.order = layers if from_root else layers[::-1]
+        around, n = mesh.around, mesh.bricks.shape[1]
+        self.chunks = _chunks(self.order, max(1, _CHUNK // len(mesh.bricks)))
+        self.pair = max((len(c) for c in self.chunks), default=0) * around * n * n
+        self.work = solid.Workspace()
+
+        def pattern(*, clamped: bool) -> Pattern:
+            return make_pattern(
+                mesh, unknowns, from_root=from_root, clamped=clamped,
+                stride=6 * self.pair, pair=self.pair,
+            )  # fmt: skip
+
+        plain = pattern(clamped=False)
+        self.patterns = dict.fromkeys(self.order, plain)
+        if from_root and layers:
+            self.patterns[0] = pattern(clamped=True)
+        self.scratch = {p: np.zeros(p.size) for p in set(self.patterns.values())}
+        sizes = {
+            layer: p.block + (unknowns.plug - p.behind if self._is_plug(layer) else 0)
+            for layer, p in self.patterns.items()
+        }
+        self.pivots = {layer: Pivot(size) for layer, size in sizes.items()}
+        self.couplings = {layer: np.empty((size, plain.far)) for layer, size in sizes.items()}
+        self.next = np.zeros((plain.far, plain.far))
+        self.internal = np.zeros_like(mesh.X)
+        self.gradient = np.zeros_like(mesh.X)
+        self.energy = self.volume = 0.0
+        self.least_J = np.inf
+
+    def _is_plug(self, layer: int) -> bool:
+        return layer == self.mesh.layers - 1
+
+    def evaluate(self, x: FloatArray, pressure: float, plug: Plug | None) -> None:
+        """Sum this part's forces; with ``plug`` factor its layers too."""
+        self.internal[...] = 0.0
+        self.gradient[...] = 0.0
+        self.next[...] = 0.0
+        self.energy = self.volume = 0.0
+        self.least_J = np.inf
+        for chunk in self.chunks:
+            self._add_forces(chunk, x, pressure, plug is not None)
+            if not self.least_J > 0.0:
+                return
+            if plug is not None:
+                for layer in chunk if self.from_root else chunk[::-1]:
+                    self._eliminate(layer, layer - chunk.start, x, pressure, plug)
+
+    def _add_forces(self, chunk: range, x: FloatArray, pressure: float, tangent: bool) -> None:
+        mesh, work = self.mesh, self.work
+        around, n, m = mesh.around, mesh.bricks.shape[1], mesh.outer.shape[1]
+        E = len(chunk) * around
+        first = np.asarray(chunk)[:, None, None] * (mesh.ring + mesh.mid)
+        flat = x.reshape(-1, 3)
+        heights = np.repeat(mesh.heights[chunk.start : chunk.stop], around)
+        internal, gradient = self.internal.reshape(-1, 3), self.gradient.reshape(-1, 3)
+        through = mesh.size.through
+        stiffness = work.get("stiffness", (through, 6, self.pair))[:, :, : E * n * n]
+        for deep in range(through):
+            bricks = mesh.bricks[deep * around : (deep + 1) * around]
+            nodes = (first + bricks).reshape(E, n)
+            state = solid.respond(
+                mesh.actuator.rubber,
+                mesh.brick[deep],
+                heights,
+                np.ascontiguousarray(flat[nodes].transpose(2, 1, 0)),
+                work,
+                stiffness[deep].reshape(6, E, n * n) if tangent else None,
+                mean_dilatation=mesh.size.mean_dilatation,
+            )
+            self.least_J = min(self.least_J, state.least_J)
+            if not self.least_J > 0.0:
+                return
+            self.energy += float(state.energy.sum())
+            _scatter(internal, nodes, state.force.transpose(2, 1, 0))
+        faces = slice(chunk.start * around, chunk.stop * around)
+        outer = (first + mesh.outer).reshape(E, m)
+        skin = stiffness[-1].reshape(6, E, n, n)[:, :, n - m :, n - m :]
+        for family in (mesh.axial, mesh.hoop):
+            threads = Threads(family.gradient[faces], family.weight[faces])
+            pull = gauze.respond(mesh.actuator.gauze, threads, flat[outer], tangent)
+            self.energy += float(pull.energy.sum())
+            _scatter(internal, outer, pull.force)
+            if pull.stiffness is not None:
+                skin += pull.stiffness.transpose(1, 0, 2).reshape(6, E, m, m)
+        inner = (first + mesh.inner).reshape(E, m)
+        volume, dV, h = face_volumes(np.ascontiguousarray(flat[inner].transpose(2, 1, 0)), tangent)
+        self.volume += float(volume.sum())
+        _scatter(gradient, inner, dV.transpose(2, 1, 0))
+        if h is not None:
+            wall = stiffness[0].reshape(6, E, n, n)[:, :, :m, :m]
+            h = pressure * h.transpose(0, 3, 1, 2)
+            wall[1] -= h[2]
+            wall[2] += h[1]
+            wall[4] -= h[0]
+
+    def _eliminate(
+        self, layer: int, place: int, x: FloatArray, pressure: float, plug: Plug
+    ) -> None:
+        pattern, pivot, coupling = self.patterns[layer], self.pivots[layer], self.couplings[layer]
+        b, r = pattern.block, pattern.far
+        stiffness = self.work.get("stiffness", (self.mesh.size.through * 6 * self.pair,))
+        source = stiffness[place * self.mesh.around * self.mesh.bricks.shape[1] ** 2 :]
+        step = self.scratch[pattern]
+        for rank, (at, to) in enumerate(zip(pattern.source, pattern.target, strict=True)):
+            if rank == 0:
+                step[to] = source[at]
+            else:
+                step[to] += source[at]
+        own = step[: b * b].reshape(b, b)
+        own_coupling = step[b * b : b * (b + r)].reshape(b, r)
+        added = self.next[: pattern.behind, : pattern.behind]
+        if self._is_plug(layer):
+            load = (self.internal[-1] - pressure * self.gradient[-1])[: self.mesh.ring]
+            own, own_coupling = plug.condense(x, load, pressure, own, own_coupling)
+            added = added[:0, :0]  # there is no layer before it
+        np.copyto(coupling, own_coupling)
+        pivot.factorise(own, added)
+        np.copyto(self.next, step[b * (b + r) :].reshape(r, r))
+        pivot.reduce(coupling)
+        pivot.update(self.next, coupling)
+
+    def forward(self, rings: FloatArray, mids: FloatArray, plug: FloatArray) -> FloatArray:
+        """Reduce right sides in place; return what to take from the middle ring's (k, far)."""
+        carry = np.zeros((len(rings), self.next.shape[0]))
+        for layer in self.order:
+            rows = self._rows(layer, rings, mids, plug)
+            if self.patterns[layer].behind and not self._is_plug(layer):
+                rows[:, mids.shape[2] :] -= carry
+            self.pivots[layer].forward(rows)
+            carry = rows @ self.couplings[layer]
+            self._put(layer, rows, rings, mids, plug)
+        return carry
+
+    def backward(
+        self, rings: FloatArray, mids: FloatArray, plug: FloatArray, ahead: FloatArray
+    ) -> None:
+        """Solve in place from the middle ring's values ``ahead`` (k, far) to the end."""
+        for layer in self.order[::-1]:
+            pivot = self.pivots[layer]
+            rows = self._rows(layer, rings, mids, plug)
+            known = ahead @ self.couplings[layer].T
+            rows -= known if pivot.signs is None else known * pivot.signs
+            pivot.backward(rows)
+            ahead = rows[:, mids.shape[2] :]
+            self._put(layer, rows, rings, mids, plug)
+
+    def _behind(self, layer: int, rings: FloatArray, plug: FloatArray) -> FloatArray | None:
+        if self._is_plug(layer):
+            return plug
+        if self.patterns[layer].behind == 0:
+            return None
+        return rings[:, layer - 1 if self.from_root else layer]
+
+    def _rows(
+        self, layer: int, rings: FloatArray, mids: FloatArray, plug: FloatArray
+    ) -> FloatArray:
+        behind = self._behind(layer, rings, plug)
+        parts = [mids[:, layer]] if behind is None else [mids[:, layer], behind]
+        return np.concatenate(parts, axis=1)
+
+    def _put(
+        self, layer: int, rows: FloatArray, rings: FloatArray, mids: FloatArray, plug: FloatArray
+    ) -> None:
+        own = mids.shape[2]
+        mids[:, layer] = rows[:, :own]
+        behind = self._behind(layer, rings, plug)
+        if behind is not None:
+            behind[...] = rows[:, own:]
+
+
+def _chunks(order: range, most: int) -> list[range]:
+    """Cut layers into ascending ranges of nearly equal length, in the order of elimination."""
+    count = -(-len(order) // most) if len(order) else 0
+    cuts = [round(len(order) * k / count) for k in range(count + 1)] if count else []
+    chunks = [order[a:b] for a, b in zip(cuts, cuts[1:], strict=False)]
+    return [chunk if chunk.step > 0 else chunk[::-1] for chunk in chunks]
+
+
+def _scatter(into: FloatArray, nodes: IntArray, values: FloatArray) -> None:
+    """Add values (E, n, 3) to the rows ``nodes`` (E, n) of ``into`` (N, 3)."""
+    low = int(nodes.min())
+    size = int(nodes.max()) - low + 1
+    at = nodes.ravel() - low
+    for i in range(3):
+        into[low : low + size, i] += np.bincount(at, values[..., i].ravel(), size)

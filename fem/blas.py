@@ -1,0 +1,143 @@
+"""Dense kernels that let other threads run, and BLAS kept to one thread.
+
+numpy lets go of the interpreter's lock in products; scipy's wrappers of Cholesky and triangular
+solves do not, so these are called through the pointers that scipy exports (see the
+documentation of scipy.linalg.cython_blas). At the sizes of one cross-section BLAS's own threads
+make the whole several times slower; they are held to one while a solver works.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+from scipy.linalg import cython_blas, cython_lapack
+
+FloatArray = NDArray[np.float64]
+
+
+def _function(module: Any, name: str, arguments: int) -> Callable[..., None]:
+    capsule = module.__pyx_capi__[name]
+    api = ctypes.pythonapi
+    api.PyCapsule_GetName.restype = ctypes.c_char_p
+    api.PyCapsule_GetName.argtypes = [ctypes.py_object]
+    api.PyCapsule_GetPointer.restype = ctypes.c_void_p
+    api.PyCapsule_GetPointer.argtypes = [ctypes.py_object, ctypes.c_char_p]
+    pointer = api.PyCapsule_GetPointer(capsule, api.PyCapsule_GetName(capsule))
+    return ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * arguments)(pointer)
+
+
+_dpotrf = _function(cython_lapack, "dpotrf", 5)
+_dtrsm = _function(cython_blas, "dtrsm", 11)
+_dsyrk = _function(cython_blas, "dsyrk", 10)
+_ONE, _MINUS = ctypes.c_double(1.0), ctypes.c_double(-1.0)
+_ref = ctypes.byref
+
+
+def cholesky(A: FloatArray) -> bool:
+    """Factor A (n, n), given by its upper triangle, in place: A = U^T U.
+
+    Returns
+    -------
+    bool
+        Whether A is positive definite; it is spoilt where it is not.
+    """
+    n, info = ctypes.c_int(len(A)), ctypes.c_int()
+    _dpotrf(b"L", _ref(n), A.ctypes.data, _ref(n), _ref(info))
+    return info.value == 0
+
+
+def solve_lower(U: FloatArray, B: FloatArray) -> None:
+    """Overwrite B (n, m) with U^-T B."""
+    if B.size == 0:
+        return
+    # C order is LAPACK's transpose: B^T U^-1 with a lower triangle there.
+    n, m = ctypes.c_int(B.shape[0]), ctypes.c_int(B.shape[1])
+    _dtrsm(
+        b"R", b"L", b"T", b"N", _ref(m), _ref(n), _ref(_ONE),
+        U.ctypes.data, _ref(n), B.ctypes.data, _ref(m),
+    )  # fmt: skip
+
+
+def solve_rows(U: FloatArray, rows: FloatArray, transposed: bool) -> None:
+    """Overwrite every row r of rows (k, n) with U^-T r, or U^-1 r where ``transposed``."""
+    if rows.size == 0:
+        return
+    n, k = ctypes.c_int(rows.shape[1]), ctypes.c_int(rows.shape[0])
+    _dtrsm(
+        b"L", b"L", b"T" if transposed else b"N", b"N", _ref(n), _ref(k), _ref(_ONE),
+        U.ctypes.data, _ref(n), rows.ctypes.data, _ref(n),
+    )  # fmt: skip
+
+
+def subtract_gram(C: FloatArray, B: FloatArray) -> None:
+    """Take B^T B from the upper triangle of C (m, m), for B (n, m)."""
+    if B.size == 0:
+        return
+    n, m = ctypes.c_int(B.shape[0]), ctypes.c_int(B.shape[1])
+    _dsyrk(
+        b"L", b"N", _ref(m), _ref(n), _ref(_MINUS),
+        B.ctypes.data, _ref(m), _ref(_ONE), C.ctypes.data, _ref(m),
+    )  # fmt: skip
+
+
+@cache
+def _thread_switches() -> tuple[tuple[Any, Any], ...]:
+    """Getter and setter of the thread count of every OpenBLAS that numpy and scipy brought."""
+    found = []
+    for package in (np, scipy):
+        home = Path(package.__file__).parent
+        for folder in (home.parent / f"{package.__name__}.libs", home / ".dylibs"):
+            for path in sorted(folder.glob("*openblas*")):
+                library = ctypes.CDLL(str(path))
+                for prefix in ("scipy_", ""):
+                    for suffix in ("64_", ""):
+                        name = f"{prefix}openblas_%s_num_threads{suffix}"
+                        get = getattr(library, name % "get", None)
+                        put = getattr(library, name % "set", None)
+                        if get is not None and put is not None:
+                            found.append((get, put))
+    return tuple(found)
+
+
+class _Hold:
+    """How many solvers are at work, and what to go back to after the last."""
+
+    def __init__(self) -> None:
+        self.lock = threading.Lock()
+        self.users = 0
+        self.before: list[int] = []
+
+
+_HOLD = _Hold()
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Hold BLAS to one thread while any solver is inside; the count before comes back after.
+
+    A process has one count, so this is the one thing here that is shared. A BLAS that did not
+    come with numpy's or scipy's wheels keeps its own count: slower at worst, not wrong.
+    """
+    with _HOLD.lock:
+        if _HOLD.users == 0:
+            _HOLD.before = [get() for get, _ in _thread_switches()]
+            for _, put in _thread_switches():
+                put(1)
+        _HOLD.users += 1
+    try:
+        yield
+    finally:
+        with _HOLD.lock:
+            _HOLD.users -= 1
+            if _HOLD.users == 0:
+                for (_, put), count in zip(_thread_switches(), _HOLD.before, strict=True):
+                    put(count)

@@ -1,0 +1,239 @@
+"""What is read off a deformed actuator: angles, lines, diameters, stretches, threads, contact.
+
+All quantities are those of the whole tube, also where only half of it is modelled.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from fem import gauze
+from fem.element import face_nodes, natural_nodes, shape
+from fem.mesh import Mesh, start_angle
+from fem.sections import rotation_matrix, rotation_vector
+
+FloatArray = NDArray[np.float64]
+
+_NEAR = 0.02  # of the diameter: surfaces this near touch
+
+
+@dataclass(frozen=True)
+class Shape:
+    """Lines and sections along the tube; S rings.
+
+    Attributes
+    ----------
+    z : (S,) mm
+        Places at rest, from the clamped end to the plug's inner face.
+    centre : (S, 3) mm
+        Centre line: mean of the sections.
+    facing, far : (S, 3) mm
+        Surface lines at 270 deg (toward the object) and 90 deg.
+    rotation : (S, 3, 3)
+        Of the sections, from rest.
+    height, breadth : (S,) mm
+        Outer diameter in the bending plane (270 to 90 deg) and across it (0 to 180 deg).
+    bulge : (S,) mm
+        Largest distance of the surface from the section's centre, over the radius at rest.
+    """
+
+    z: FloatArray
+    centre: FloatArray
+    facing: FloatArray
+    far: FloatArray
+    rotation: FloatArray
+    height: FloatArray
+    breadth: FloatArray
+    bulge: FloatArray
+
+
+@dataclass(frozen=True)
+class Sector:
+    """Rigid motion of a wrapped sector, taken at its middle section.
+
+    Attributes
+    ----------
+    start, end : float
+        Its edges at rest, mm.
+    centre : (3,) mm
+    rotation : (3, 3)
+        From rest.
+    """
+
+    start: float
+    end: float
+    centre: FloatArray
+    rotation: FloatArray
+
+
+@dataclass(frozen=True)
+class Gauze:
+    """State of the threads.
+
+    Attributes
+    ----------
+    axial_force, hoop_force : float
+        Largest force a unit of width, N/mm.
+    slack : (layers, around) bool
+        Faces whose axial threads are slack in the middle, inside first around from 270 deg.
+    slack_share : float
+        Share of the wrapped surface whose axial threads are slack.
+    """
+
+    axial_force: float
+    hoop_force: float
+    slack: NDArray[np.bool_]
+    slack_share: float
+
+
+def lines(mesh: Mesh, x: FloatArray) -> Shape:
+    """Read lines and sections off nodal positions x."""
+    facing, far, side, other = (
+        surface_line(mesh, x, np.radians(phi)) for phi in (270.0, 90.0, 0.0, 180.0)
+    )
+    centre = 0.25 * (facing + far + side + other)
+    reach = np.linalg.norm(x[:, mesh.outer_ring] - centre[:, None], axis=2).max(axis=1)
+    return Shape(
+        z=mesh.z,
+        centre=centre,
+        facing=facing,
+        far=far,
+        rotation=rotations(mesh, x),
+        height=np.linalg.norm(facing - far, axis=1),
+        breadth=np.linalg.norm(side - other, axis=1),
+        bulge=reach - mesh.actuator.radius,
+    )
+
+
+def rotations(mesh: Mesh, x: FloatArray) -> FloatArray:
+    """Rotation of every ring from rest that fits its nodes best: (layers + 1, 3, 3)."""
+    rest, now = mesh.X[:, : mesh.ring], x[:, : mesh.ring]
+    if mesh.half:
+        mirror = np.array([-1.0, 1.0, 1.0])
+        rest, now = (np.concatenate([v, v * mirror], axis=1) for v in (rest, now))
+    rest = rest - rest.mean(axis=1, keepdims=True)
+    now = now - now.mean(axis=1, keepdims=True)
+    U, _, Vt = np.linalg.svd(np.swapaxes(now, 1, 2) @ rest)
+    U[:, :, 2] *= (np.linalg.det(U) * np.linalg.det(Vt))[:, None]
+    turned: FloatArray = U @ Vt
+    return turned
+
+
+def surface_weights(mesh: Mesh, phi: float) -> tuple[NDArray[np.int64], FloatArray, float]:
+    """Nodes of a ring and weights that give the surface point at phi, rad.
+
+    Returns
+    -------
+    nodes : (n,)
+    weights : (n,)
+    mirror : float
+        -1 where the point lies in the half that is not modelled (x changes its sign), else 1.
+    """
+    mirror = 1.0
+    turn = (phi - start_angle()) % (2.0 * np.pi)
+    if mesh.half and turn > np.pi + 1e-12:
+        turn, mirror = 2.0 * np.pi - turn, -1.0
+    span = (np.pi if mesh.half else 2.0 * np.pi) / mesh.around
+    k = min(int(turn / span + 1e-9), mesh.around - 1)
+    m = face_nodes(mesh.size.kind)
+    eta = 2.0 * (turn - k * span) / span - 1.0
+    N, _ = shape(natural_nodes(mesh.size.kind)[-m:, 1:], [[eta, -1.0]])
+    nodes = mesh.outer[k]
+    keep = (nodes < mesh.ring) & (np.abs(N[0]) > 1e-12)
+    return nodes[keep], N[0][keep], mirror
+
+
+def surface_line(mesh: Mesh, x: FloatArray, phi: float) -> FloatArray:
+    """Surface points at phi on all rings: (layers + 1, 3), mm."""
+    nodes, weights, mirror = surface_weights(mesh, phi)
+    line = np.einsum("n,knj->kj", weights, x[:, nodes])
+    line[:, 0] *= mirror
+    return line
+
+
+def sectors(mesh: Mesh, shape: Shape) -> tuple[Sector, ...]:
+    """Rigid motions of the wrapped sectors."""
+    found = []
+    for start, end in mesh.actuator.wrapped:
+        middle = 0.5 * (start + end)
+        k = int(np.clip(np.searchsorted(mesh.z, middle) - 1, 0, mesh.layers - 1))
+        share = (middle - mesh.z[k]) / (mesh.z[k + 1] - mesh.z[k])
+        before, after = shape.rotation[k], shape.rotation[k + 1]
+        turn = rotation_matrix(share * rotation_vector(after @ before.T))
+        centre = (1.0 - share) * shape.centre[k] + share * shape.centre[k + 1]
+        found.append(Sector(start, end, centre, turn @ before))
+    return tuple(found)
+
+
+def joint_angles(mesh: Mesh, x: FloatArray, wrapped: tuple[Sector, ...]) -> FloatArray:
+    """Angle of every joint, rad: between the lines across the middles of the sectors beside it.
+
+    A line runs from the surface point opposite alpha_center to the one at alpha_center, as a
+    picture of the bent tube shows it. Positive toward the object, negative where the uncut
+    sector faces away from it.
+    """
+    angles = []
+    for window, before, after in zip(mesh.actuator.windows, wrapped, wrapped[1:], strict=False):
+        across = surface_line(mesh, x, window.center) - surface_line(mesh, x, window.center + np.pi)
+        d1, d2 = (
+            np.array([np.interp(0.5 * (s.start + s.end), mesh.z, across[:, i]) for i in range(3)])
+            for s in (before, after)
+        )
+        axis = before.rotation @ [-np.sin(window.center), np.cos(window.center), 0.0]
+        sine, cosine = axis @ np.cross(d1, d2), d1 @ d2 - (d1 @ axis) * (d2 @ axis)
+        theta = np.arctan2(sine, cosine)
+        angles.append(-theta if window.away else theta)
+    return np.array(angles)
+
+
+def touches(mesh: Mesh, x: FloatArray) -> bool:
+    """Whether the tube's surface meets itself: nodes far apart at rest that lie close now."""
+    rest = mesh.X[:, mesh.outer_ring].reshape(-1, 3)
+    now = x[:, mesh.outer_ring].reshape(-1, 3)
+    pairs = cKDTree(now).query_pairs(_NEAR * mesh.actuator.diameter, output_type="ndarray")
+    if len(pairs) == 0:
+        return False
+    apart = np.linalg.norm(rest[pairs[:, 0]] - rest[pairs[:, 1]], axis=1)
+    return bool((apart > mesh.actuator.radius).any())
+
+
+def threads(mesh: Mesh, x: FloatArray) -> Gauze:
+    """State of the threads."""
+    law = mesh.actuator.gauze
+    faces = np.arange(mesh.layers)[:, None, None] * (mesh.ring + mesh.mid) + mesh.outer
+    nodes = x.reshape(-1, 3)[faces.reshape(-1, mesh.outer.shape[1])]
+    force = {}
+    for name, family in (("axial", mesh.axial), ("hoop", mesh.hoop)):
+        lam = gauze.stretch(family, nodes)
+        pull = law.stiffness * gauze.law(law, lam)[1]
+        force[name] = np.where(family.weight > 0.0, pull, 0.0)
+        if name == "axial":
+            slack_points = (lam < 1.0) & (family.weight > 0.0)
+            weight = family.weight
+    slack = slack_points.mean(axis=1) >= 0.5
+    total = float(weight.sum())
+    return Gauze(
+        axial_force=float(force["axial"].max()),
+        hoop_force=float(force["hoop"].max()),
+        slack=slack.reshape(mesh.layers, mesh.around),
+        slack_share=float(weight[slack_points].sum()) / total,
+    )
+
+
+def largest_stretch(mesh: Mesh, x: FloatArray) -> float:
+    """Largest principal stretch of the rubber at any Gauss point."""
+    worst = 0.0
+    first = np.arange(mesh.layers)[:, None, None] * (mesh.ring + mesh.mid)
+    scale = np.repeat(2.0 / mesh.heights, mesh.around)
+    for deep, brick in enumerate(mesh.brick):
+        bricks = mesh.bricks[deep * mesh.around : (deep + 1) * mesh.around]
+        nodes = (first + bricks).reshape(-1, bricks.shape[1])
+        F = (brick.dN @ x.reshape(-1, 3)[nodes].transpose(2, 1, 0)).reshape(3, 3, -1, len(nodes))
+        F[:, 2] *= scale
+        C = np.einsum("kiqe,kjqe->qeij", F, F)
+        worst = max(worst, float(np.linalg.eigvalsh(C)[..., 2].max()))
+    return float(np.sqrt(worst))

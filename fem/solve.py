@@ -1,0 +1,202 @@
+"""From an actuator and pressures to states: the front door of the package."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem import blas, measure
+from fem.actuator import Actuator
+from fem.assembly import System
+from fem.errors import Attempt
+from fem.loadpath import Equilibrium, Options, follow
+from fem.mesh import DEFAULT_MESH, Mesh, MeshSize, make_mesh
+from fem.sections import Chart
+
+FloatArray = NDArray[np.float64]
+DEFAULT_OPTIONS = Options()
+
+
+@dataclass(frozen=True)
+class State:
+    """An actuator at one pressure; all quantities are those of the whole tube.
+
+    Attributes
+    ----------
+    pressure : float, MPa
+    theta : (joints,) rad
+        Positive toward the object; see `fem.measure.joint_angles`.
+    shape : fem.measure.Shape
+    sectors : tuple of fem.measure.Sector
+    threads : fem.measure.Gauze
+    volume : float, mm^3
+        Enclosed: the air demand is what it exceeds that at rest.
+    energy, work : float, N mm
+        Stored in rubber and gauze; done by the pressure so far.
+    residual : float
+        Unbalanced forces over the pressure's.
+    least_J : float
+        Smallest determinant of F.
+    largest_stretch : float
+        Largest principal stretch of the rubber at any Gauss point.
+    touches : bool
+        Whether the tube's surface meets itself; the model has no contact.
+    x : (layers + 1, ring + mid, 3) mm
+        Nodal positions of the mesh.
+    """
+
+    pressure: float
+    theta: FloatArray
+    shape: measure.Shape
+    sectors: tuple[measure.Sector, ...]
+    threads: measure.Gauze
+    volume: float
+    energy: float
+    work: float
+    residual: float
+    least_J: float
+    largest_stretch: float
+    touches: bool
+    x: FloatArray
+
+    @property
+    def energy_error(self) -> float:
+        """How far the stored energy is off the work done, over the work."""
+        return abs(self.energy - self.work) / max(abs(self.work), 1e-12)
+
+
+@dataclass(frozen=True)
+class Critical:
+    """Where the path loses its stability.
+
+    Attributes
+    ----------
+    kind : {"limit point", "bifurcation"}
+        A limit point has no equilibrium at higher pressure nearby: the tube balloons.
+    pressure : float, MPa
+    """
+
+    kind: str
+    pressure: float
+
+
+@dataclass(frozen=True)
+class Solution:
+    """What a run gives.
+
+    Attributes
+    ----------
+    mesh : Mesh
+    states : tuple of State
+        At rest, then at every asked pressure that was reached, in order.
+    critical : Critical or None
+        What ended the path before the last asked pressure.
+    history : tuple of Attempt
+    newton_iterations, factorisations : int
+    seconds : float
+    """
+
+    mesh: Mesh
+    states: tuple[State, ...]
+    critical: Critical | None
+    history: tuple[Attempt, ...]
+    newton_iterations: int
+    factorisations: int
+    seconds: float
+
+    @property
+    def converged(self) -> bool:
+        """Whether every asked pressure was reached."""
+        return self.critical is None
+
+
+def solve(
+    actuator: Actuator,
+    pressures: Sequence[float],
+    size: MeshSize = DEFAULT_MESH,
+    options: Options = DEFAULT_OPTIONS,
+    *,
+    whole: bool = False,
+    threads: int = 2,
+    progress: Callable[[float], None] | None = None,
+) -> Solution:
+    """Inflate an actuator.
+
+    Parameters
+    ----------
+    actuator : Actuator
+    pressures : sequence of float
+        Gauge pressures to report, MPa; taken in rising order.
+    size : MeshSize
+    options : Options
+    whole : bool
+        Model the whole tube even where half of it would do.
+    threads : {1, 2}
+    progress : callable, optional
+        Takes the pressure reached so far, MPa.
+
+    Raises
+    ------
+    NotConverged
+        With its history.
+    ValueError
+        When a pressure is negative or not finite.
+    """
+    asked = sorted({float(p) for p in pressures if p != 0.0})
+    if not all(np.isfinite(asked)) or any(p < 0.0 for p in asked):
+        raise ValueError("pressures must be finite numbers, 0 or above")
+    begun = time.perf_counter()
+    mesh = make_mesh(actuator, size, whole)
+    chart = Chart(mesh)
+    history: list[Attempt] = []
+    with blas.one_thread():
+        system = System(mesh, threads)
+        try:
+            rest = system.forces(mesh.X)
+            states = [_state(mesh, Equilibrium(0.0, chart.rest(), rest, 0.0, True), 0.0)]
+            work, before = 0.0, (0.0, rest.volume)
+            for found in follow(system, chart, asked, options, history):
+                volume = found.forces.volume
+                work += 0.5 * (found.pressure + before[0]) * (volume - before[1])
+                before = (found.pressure, volume)
+                if progress is not None:
+                    progress(found.pressure)
+                if found.asked:
+                    states.append(_state(mesh, found, work))
+        finally:
+            system.close()
+    return Solution(
+        mesh=mesh,
+        states=tuple(states),
+        critical=None,
+        history=tuple(history),
+        newton_iterations=sum(a.iterations for a in history),
+        factorisations=0,
+        seconds=time.perf_counter() - begun,
+    )
+
+
+def _state(mesh: Mesh, found: Equilibrium, work: float) -> State:
+    x, forces = found.pose.x, found.forces
+    twice = 2.0 if mesh.half else 1.0
+    shape = measure.lines(mesh, x)
+    wrapped = measure.sectors(mesh, shape)
+    return State(
+        pressure=found.pressure,
+        theta=measure.joint_angles(mesh, x, wrapped),
+        shape=shape,
+        sectors=wrapped,
+        threads=measure.threads(mesh, x),
+        volume=twice * forces.volume,
+        energy=twice * forces.energy,
+        work=twice * work,
+        residual=found.residual,
+        least_J=forces.least_J,
+        largest_stretch=measure.largest_stretch(mesh, x),
+        touches=measure.touches(mesh, x),
+        x=x,
+    )
