@@ -155,6 +155,42 @@ class System:
         energy, volume = root.energy + tip.energy, root.volume + tip.volume + cap
         return Forces(internal, gradient, energy, volume, least)
 
+    def compliance(
+        self, x: FloatArray, layers: IntArray, around: IntArray, units: FloatArray
+    ) -> FloatArray:
+        """A^T K^-1 A of load patterns on outer faces, by half a solve; K positive definite.
+
+        Parameters
+        ----------
+        x : nodal positions at the factored tangent
+        layers, around : (s,)
+            The face of each pattern.
+        units : (s, m, 3)
+            Its loads on the face's nodes.
+
+        Returns
+        -------
+        (s, s)
+        """
+        mesh = self.mesh
+        loads = np.zeros((len(layers), 2 * mesh.ring + mesh.mid, 3))
+        loads[np.arange(len(layers))[:, None], mesh.outer[around]] = units
+        loads = loads.reshape(len(layers), -1)
+        result = np.zeros((len(layers), len(layers)))
+        T = self.plug.motions(x)
+        left: dict[_Part, tuple[IntArray, FloatArray]] = {}
+
+        def reduce(part: _Part) -> None:
+            left[part] = part.compliance(layers, loads, T, result)
+
+        self._both(reduce)
+        if self.middle > 0:
+            which = np.concatenate([left[part][0] for part in self._parts])
+            rows = np.concatenate([left[part][1] for part in self._parts])
+            self._last.forward(rows)
+            result[np.ix_(which, which)] += rows @ rows.T
+        return result
+
     def restrict(self, x: FloatArray, nodal: FloatArray) -> FloatArray:
         """Nodal forces (layers + 1, ring + mid, 3) on the unknowns (count,)."""
         u, ring = self.unknowns, self.mesh.ring
@@ -355,6 +391,38 @@ class _Part:
             pivot.backward(rows)
             ahead = rows[:, mids.shape[2] :]
             self._put(layer, rows, rings, mids, plug)
+
+    def compliance(
+        self, layers: IntArray, loads: FloatArray, T: FloatArray, result: FloatArray
+    ) -> tuple[IntArray, FloatArray]:
+        """Add this part's share of L^-1 A squared; return the patterns and what is left of them.
+
+        ``loads`` (s, 3 nodes of a layer), ``T`` the motions of the last ring by the plug's.
+        """
+        active = np.zeros(0, dtype=np.int64)
+        ahead = np.zeros((0, self.next.shape[0]))
+        own_mids = len(self.unknowns.mid)
+        for layer in self.order:
+            pattern = self.patterns[layer]
+            fresh = np.flatnonzero(layers == layer)
+            if len(active) + len(fresh) == 0:
+                continue
+            pivot = self.pivots[layer]
+            rows = np.zeros((len(active) + len(fresh), len(pivot.factor)))
+            if len(active):
+                rows[: len(active), own_mids:] = ahead
+            own = loads[fresh][:, pattern.block_nodes]
+            if self._is_plug(layer):
+                rows[len(active) :, :own_mids] = own[:, :own_mids]
+                rows[len(active) :, own_mids:] = loads[fresh][:, -T.shape[0] :] @ T
+            else:
+                rows[len(active) :] = own
+            pivot.forward(rows)
+            active = np.concatenate([active, fresh])
+            result[np.ix_(active, active)] += rows @ rows.T
+            ahead = -(rows @ self.couplings[layer])
+            ahead[len(active) - len(fresh) :] += loads[fresh][:, pattern.far_nodes]
+        return active, ahead
 
     def _behind(self, layer: int, rings: FloatArray, plug: FloatArray) -> FloatArray | None:
         if self._is_plug(layer):

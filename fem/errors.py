@@ -18,11 +18,13 @@ class Attempt:
     """One pressure that the solver tried.
 
     ``residual`` is relative to the pressure's nodal forces; ``outcome`` says in a word what came
-    of it: "converged", "residual", "inverted" or "unstable".
+    of it: "converged", "residual" (still too large), "inverted" (a brick turned inside out) or
+    "unstable" (equilibrium, but not a stable one).
     """
 
     pressure: float
     iterations: int
+    factorisations: int
     residual: float
     outcome: str
 

@@ -2,13 +2,15 @@
 
 A generator of equilibria, apart from Newton's method: it predicts the next state by
 extrapolation in the chart of sections, sizes the step by how far off the last prediction was,
-and reaches the asked pressures exactly.
+and reaches the asked pressures exactly. Where no equilibrium is found ahead it goes on by
+volume, under which a balloon is stable, and so finds out whether the pressure has a maximum.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +21,10 @@ from fem.newton import Correction, correct
 from fem.sections import Chart, Pose
 
 FloatArray = NDArray[np.float64]
+
+_ORDER = 3  # of the extrapolation
+_SHRINK, _GROW = 0.3, 2.5
+_LIMIT_STEPS = 60  # by volume, before it gives up looking for a maximum
 
 
 @dataclass(frozen=True)
@@ -31,17 +37,20 @@ class Options:
         Residual over the pressure's forces at asked pressures, and at those in between.
     aim : float
         Residual that a prediction may have.
-    first : float
-        First step, in parts of the rubber's shear modulus.
-    smallest : float
-        Step below which it gives up, in parts of the shear modulus.
+    first, smallest : float
+        First step, and the step below which something must be in the way, over the rubber's
+        shear modulus.
+    beyond : float
+        How much further to follow the path by volume past a limit point, as a share of the
+        volume there.
     """
 
     tolerance: float = 1e-6
-    between: float = 1e-3
-    aim: float = 0.3
-    first: float = 0.01
-    smallest: float = 1e-4
+    between: float = 3e-3
+    aim: float = 0.15
+    first: float = 0.04
+    smallest: float = 2e-3
+    beyond: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -53,73 +62,210 @@ class Equilibrium:
     pressure : float, MPa
     pose : Pose
     forces : Forces
+    compliance : float
+        dV/dp, mm^3/MPa; negative past a limit point.
     residual : float
         Relative to the pressure's forces.
     asked : bool
-        Whether this pressure was asked for.
+        Whether this state shall be reported.
     """
 
     pressure: float
     pose: Pose
     forces: Forces
+    compliance: float
     residual: float
     asked: bool
 
 
-def follow(
-    system: System,
-    chart: Chart,
-    pressures: Sequence[float],
-    options: Options,
-    history: list[Attempt],
-) -> Iterator[Equilibrium]:
-    """Yield equilibria from rest through the asked pressures (rising, MPa).
+@dataclass(frozen=True)
+class Critical:
+    """Where the path loses its stability under pressure.
 
-    ``history`` takes every attempt.
-
-    Raises
-    ------
-    NotConverged
+    Attributes
+    ----------
+    kind : {"limit point", "bifurcation"}
+        Beyond a limit point there is no equilibrium nearby at a higher pressure: the tube
+        balloons. At a bifurcation it buckles into another shape.
+    pressure : float, MPa
     """
-    mu = system.mesh.actuator.rubber.shear_modulus
-    step = options.first * mu
-    known: list[tuple[float, Pose]] = []
-    pressure = 0.0
-    for target in pressures:
-        while pressure < target:
-            count = max(1, int(np.ceil((target - pressure) / step - 1e-6)))
-            asked = count == 1
-            trial = target if asked else pressure + (target - pressure) / count
-            pose = predict(chart, known, trial)
-            tolerance = options.tolerance if asked else options.between
-            done = correct(system, chart, pose, trial, tolerance)
-            history.append(Attempt(trial, done.iterations, done.residual, done.outcome))
-            if done.outcome != "converged":
-                step = 0.5 * (trial - pressure)
+
+    kind: Literal["limit point", "bifurcation"]
+    pressure: float
+
+
+class Path:
+    """The path of one system from rest.
+
+    Attributes
+    ----------
+    history : list of Attempt
+        All that was tried so far.
+    critical : Critical or None
+        What ended the path before the last asked pressure.
+    """
+
+    def __init__(self, system: System, chart: Chart, options: Options) -> None:
+        self._system, self._chart, self._options = system, chart, options
+        self._known: list[Equilibrium] = []
+        self.history: list[Attempt] = []
+        self.critical: Critical | None = None
+
+    def follow(self, pressures: Sequence[float]) -> Iterator[Equilibrium]:
+        """Yield equilibria through the asked pressures (rising, MPa).
+
+        Ends early, with ``critical`` set, where the path loses its stability.
+
+        Raises
+        ------
+        NotConverged
+        """
+        options = self._options
+        mu = self._system.mesh.actuator.rubber.shear_modulus
+        step, pressure = options.first * mu, 0.0
+        for target in pressures:
+            while pressure < target:
+                count = max(1, int(np.ceil((target - pressure) / step - 1e-6)))
+                asked = count == 1
+                trial = target if asked else pressure + (target - pressure) / count
+                found, first = self._try(trial, None, asked)
+                if found is not None:
+                    step = (trial - pressure) * _rate(options.aim / first)
+                    pressure = trial
+                    yield found
+                    continue
+                step = 0.4 * (trial - pressure)
                 if step < options.smallest * mu:
-                    raise NotConverged(_say(trial, done), tuple(history), pressure)
+                    yield from self._by_volume(trial, step)
+                    if self.critical is not None:
+                        return
+                    pressure = self._known[-1].pressure
+                    step = options.smallest * mu
+
+    def _try(
+        self, pressure: float, volume: float | None, asked: bool
+    ) -> tuple[Equilibrium | None, float]:
+        """Predict and correct; give the equilibrium and the prediction's residual."""
+        tolerance = self._options.tolerance if asked else self._options.between
+        pose, pressure = self._predict(pressure, volume)
+        done = correct(self._system, self._chart, pose, pressure, tolerance, volume)
+        outcome: str = done.outcome
+        flow = 0.0
+        if done.outcome == "converged" and done.inverse is not None:
+            gradient = done.forces.volume_gradient
+            flow = float(gradient @ done.inverse.solve(gradient))
+            if volume is None and done.inverse.negative:
+                outcome = "unstable"
+        self.history.append(
+            Attempt(done.pressure, done.iterations, done.factored, done.residual, outcome)
+        )
+        if outcome != "converged":
+            return None, done.first
+        found = Equilibrium(done.pressure, done.pose, done.forces, flow, done.residual, asked)
+        self._known = [*self._known[-_ORDER:], found]
+        self._last = done
+        return found, done.first
+
+    def _predict(self, pressure: float, volume: float | None) -> tuple[Pose, float]:
+        """Extrapolate the last states: a polynomial in the pressure, or in the volume."""
+        chart, known = self._chart, self._known
+        if not known:
+            return chart.taut(2.0 * self._system.mesh.actuator.gauze.transition), pressure
+        last = known[-1]
+        if len(known) == 1:
+            rise = chart.difference(chart.rest(), last.pose)
+            return chart.move(last.pose, rise * (pressure / last.pressure - 1.0)), pressure
+        by_pressure = volume is None
+        at = pressure if volume is None else volume
+        places = np.array([e.pressure if by_pressure else e.forces.volume for e in known])
+        weights = lagrange(places, at)
+        increment = sum(
+            w * chart.difference(last.pose, e.pose)
+            for w, e in zip(weights[:-1], known[:-1], strict=True)
+        )
+        if not by_pressure:
+            pressure = float(weights @ np.array([e.pressure for e in known]))
+        return chart.move(last.pose, np.asarray(increment)), pressure
+
+    def _by_volume(self, blocked: float, step: float) -> Iterator[Equilibrium]:
+        """Go on by volume from the last state, past what blocks the pressure.
+
+        Returns once the pressure is above ``blocked`` (nothing was in the way but a hard step)
+        or sets ``critical``.
+        """
+        if len(self._known) < 2:
+            raise self._failure(blocked)
+        last = self._known[-1]
+        grow = max(last.compliance * step, 1e-5 * last.forces.volume)
+        least = 1e-3 * grow
+        end = np.inf
+        for _ in range(_LIMIT_STEPS):
+            before = self._known[-1]
+            volume = before.forces.volume + grow
+            found, first = self._try(before.pressure, min(volume, end), self.critical is not None)
+            if found is None:
+                grow *= 0.4
+                if grow < least:
+                    if self.critical is None:
+                        raise self._failure(blocked)
+                    return
                 continue
-            factor = (options.aim / max(done.first, 1e-12)) ** (1.0 / 1.5)
-            step = (trial - pressure) * float(np.clip(factor, 0.3, 2.5))
-            pressure = trial
-            known = [*known[-2:], (pressure, done.pose)]
-            yield Equilibrium(pressure, done.pose, done.forces, done.residual, asked)
+            unstable = self._last.inverse is not None and self._last.inverse.negative > 0
+            if self.critical is not None:
+                yield found
+                if volume >= end:
+                    return
+            elif found.pressure < before.pressure:
+                self.critical = Critical("limit point", _maximum(self._known))
+                end = before.forces.volume * (1.0 + self._options.beyond)
+                if volume >= end:
+                    return
+                yield found
+            elif unstable:
+                self.critical = Critical("bifurcation", before.pressure)
+                return
+            elif found.pressure > blocked:
+                yield found
+                return
+            else:
+                yield found
+            grow *= min(2.0, _rate(self._options.aim / first))
+        if self.critical is None:
+            raise self._failure(blocked)
+
+    def _failure(self, pressure: float) -> NotConverged:
+        reached = self._known[-1].pressure if self._known else 0.0
+        last = self.history[-1]
+        return NotConverged(
+            f"no equilibrium found at {10.0 * pressure:.3f} bar (last outcome: {last.outcome}); "
+            f"the last state is at {10.0 * reached:.3f} bar",
+            tuple(self.history),
+            reached,
+        )
+
+    _last: Correction
 
 
-def predict(chart: Chart, known: Sequence[tuple[float, Pose]], pressure: float) -> Pose:
-    """Extrapolate the last states to a pressure: a polynomial through all that are given."""
-    if not known:
-        return chart.rest()
-    last, pose = known[-1]
-    if len(known) == 1:
-        return chart.move(pose, chart.difference(chart.rest(), pose) * (pressure / last - 1.0))
-    places = [p for p, _ in known]
-    increment: FloatArray | float = 0.0
-    for k, (place, other) in enumerate(known[:-1]):
-        weight = np.prod([(pressure - p) / (place - p) for j, p in enumerate(places) if j != k])
-        increment = increment + float(weight) * chart.difference(pose, other)
-    return chart.move(pose, np.asarray(increment))
+def lagrange(places: FloatArray, at: float) -> FloatArray:
+    """Weights of the polynomial through values at ``places`` (n,), taken at ``at``: (n,)."""
+    apart = places[:, None] - places
+    np.fill_diagonal(apart, 1.0)
+    ahead = np.broadcast_to(at - places, apart.shape).copy()
+    np.fill_diagonal(ahead, 1.0)
+    weights: FloatArray = (ahead / apart).prod(axis=1)
+    return weights
 
 
-def _say(pressure: float, done: Correction) -> str:
-    return f"no equilibrium found at {10.0 * pressure:.3f} bar ({done.outcome})"
+def _rate(share: float) -> float:
+    """How much longer the next step may be when the prediction was off by 1 / share of the aim."""
+    return float(np.clip(min(share, 1e9) ** (2.0 / 3.0), _SHRINK, _GROW))
+
+
+def _maximum(known: Sequence[Equilibrium]) -> float:
+    """Highest pressure of the parabola through the last three states over their volumes."""
+    last = known[-3:]
+    volumes = np.array([e.forces.volume for e in last])
+    pressures = np.array([e.pressure for e in last])
+    middle, width = volumes.mean(), np.ptp(volumes)
+    c, b, a = np.polynomial.polynomial.polyfit((volumes - middle) / width, pressures, 2)
+    return float(max(c - b * b / (4.0 * a), pressures.max())) if a < 0.0 else float(pressures.max())

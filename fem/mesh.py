@@ -10,7 +10,9 @@ do not exist and stay zero.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,6 +74,8 @@ class Mesh:
     size : MeshSize
     z : (layers + 1,)
         Places of the rings along the tube, mm.
+    segment : (layers,) int
+        Which stretch of the tube a layer lies in: 2 k for wrapped sector k, 2 k + 1 for window k.
     X : (layers + 1, ring + mid, 3)
         Node positions at rest.
     ring, mid : int
@@ -88,8 +92,6 @@ class Mesh:
         Whether only x >= 0 is modelled.
     axial, hoop : Threads
         Of all outer faces: E = layers * around.
-    phi : (ring,)
-        Angular position of a ring's nodes, rad.
     outer_ring : (k,)
         Nodes of a ring on the outer surface.
     """
@@ -97,6 +99,7 @@ class Mesh:
     actuator: Actuator
     size: MeshSize
     z: FloatArray
+    segment: IntArray
     X: FloatArray
     ring: int
     mid: int
@@ -109,7 +112,6 @@ class Mesh:
     half: bool
     axial: Threads
     hoop: Threads
-    phi: FloatArray
     outer_ring: IntArray
 
     @property
@@ -141,28 +143,16 @@ class Mesh:
 def make_mesh(actuator: Actuator, size: MeshSize = DEFAULT_MESH, whole: bool = False) -> Mesh:
     """Mesh an actuator: half of it where all sectors lie in one plane, unless ``whole``."""
     half = actuator.in_plane and not whole
-    z, window_of = _stations(actuator, size)
     around = size.around if half else 2 * size.around
     places = _places(size, around, half)
     bricks = _bricks(places, size, around)
     m = face_nodes(size.kind)
-    outer = bricks[-around:, -m:]
-    inner = bricks[:around, :m]
-    ring_phi = np.array([p[1] for p in places.ring])
-    ring_at = _xy(actuator, places.ring)
-    mid_at = _xy(actuator, places.mid)
-    X = np.zeros((len(z), len(ring_at) + len(mid_at), 3))
-    X[:, : len(ring_at), :2] = ring_at
-    X[:, : len(ring_at), 2] = z[:, None]
-    X[:-1, len(ring_at) :, :2] = mid_at
-    X[:-1, len(ring_at) :, 2] = 0.5 * (z[1:] + z[:-1])[:, None]
+    ring_at, mid_at = _xy(actuator, places.ring), _xy(actuator, places.mid)
     span = (_HALF if half else 2.0 * _HALF) / around
-    sectors = [None if k is None else actuator.windows[k] for k in window_of]
+    z, segment = _stations(actuator, size)
     return Mesh(
         actuator=actuator,
         size=size,
-        z=z,
-        X=X,
         ring=len(ring_at),
         mid=len(mid_at),
         bricks=bricks,
@@ -170,16 +160,59 @@ def make_mesh(actuator: Actuator, size: MeshSize = DEFAULT_MESH, whole: bool = F
             reference(size.kind, _one_brick(actuator, size, span, n), size.orders)
             for n in range(size.through)
         ),
-        outer=outer,
-        inner=inner,
+        outer=bricks[-around:, -m:],
+        inner=bricks[:around, :m],
         fixed_ring=_symmetry(ring_at, half),
         fixed_mid=_symmetry(mid_at, half),
         half=half,
-        axial=_axial_threads(actuator, size, np.diff(z), sectors, around, span),
-        hoop=_hoop_threads(actuator, size, z, around, span),
-        phi=ring_phi,
         outer_ring=np.flatnonzero([p[0] == 1.0 for p in places.ring]),
+        **_along(actuator, size, z, segment, ring_at, mid_at, around, span),
     )
+
+
+def remesh(mesh: Mesh, actuator: Actuator) -> Mesh:
+    """Mesh a changed actuator with the same layers, stretched in proportion.
+
+    The tube's section, the number of windows and the plane of symmetry must be the same.
+    """
+    edges = [edge for sector in actuator.wrapped for edge in sector]
+    z = np.zeros_like(mesh.z)
+    for k, (start, end) in enumerate(pairwise(edges)):
+        own = np.flatnonzero(mesh.segment == k)
+        if own.size:
+            old = mesh.z[own[0] : own[-1] + 2]
+            share = (old - old[0]) / (old[-1] - old[0])
+            z[own[0] : own[-1] + 2] = start + share * (end - start)
+    ring_at, mid_at = mesh.X[0, : mesh.ring, :2], mesh.X[0, mesh.ring :, :2]
+    span = (_HALF if mesh.half else 2.0 * _HALF) / mesh.around
+    changed = _along(actuator, mesh.size, z, mesh.segment, ring_at, mid_at, mesh.around, span)
+    return replace(mesh, actuator=actuator, **changed)
+
+
+def _along(
+    actuator: Actuator,
+    size: MeshSize,
+    z: FloatArray,
+    segment: IntArray,
+    ring_at: FloatArray,
+    mid_at: FloatArray,
+    around: int,
+    span: float,
+) -> dict[str, Any]:
+    """What of a mesh depends on the places along the tube, and on the sectors."""
+    X = np.zeros((len(z), len(ring_at) + len(mid_at), 3))
+    X[:, : len(ring_at), :2] = ring_at
+    X[:, : len(ring_at), 2] = z[:, None]
+    X[:-1, len(ring_at) :, :2] = mid_at
+    X[:-1, len(ring_at) :, 2] = 0.5 * (z[1:] + z[:-1])[:, None]
+    sectors = [actuator.windows[k // 2] if k % 2 else None for k in segment.tolist()]
+    return {
+        "z": z,
+        "segment": segment,
+        "X": X,
+        "axial": _axial_threads(actuator, size, np.diff(z), sectors, around, span),
+        "hoop": _hoop_threads(actuator, size, z, around, span),
+    }
 
 
 def start_angle() -> float:
@@ -256,29 +289,24 @@ def _symmetry(xy: FloatArray, half: bool) -> NDArray[np.bool_]:
     return fixed
 
 
-def _stations(actuator: Actuator, size: MeshSize) -> tuple[FloatArray, list[int | None]]:
-    """Places of the rings, and the window of each layer (None in wrapped sectors)."""
+def _stations(actuator: Actuator, size: MeshSize) -> tuple[FloatArray, IntArray]:
+    """Places of the rings, and the segment of each layer."""
     k = actuator.diameter / 20.0
-    edge, end = size.edge * k, size.end * k
-    z, window_of = [0.0], list[int | None]()
-
-    def fill(until: float, first: float, last: float, most: float, window: int | None) -> None:
-        length = until - z[-1]
+    z, segment = [0.0], list[int]()
+    edges = [edge for sector in actuator.wrapped for edge in sector]
+    for number, (start, end) in enumerate(pairwise(edges)):
+        length = end - start
         if length < 1e-9 * actuator.length:
-            return
-        heights = _graded(length, first, last, most)
-        places = z[-1] + np.cumsum(heights)
-        places[-1] = until
+            continue  # a window right at the clamped end or at the plug
+        first = size.end if number == 0 else size.edge
+        last = size.end if number == len(edges) - 2 else size.edge
+        most = size.window if number % 2 else size.wrapped
+        heights = _graded(length, first * k, last * k, most * k)
+        places = start + np.cumsum(heights)
+        places[-1] = end
         z.extend(places.tolist())
-        window_of.extend([window] * len(heights))
-
-    first = end
-    for n, w in enumerate(actuator.windows):
-        fill(w.start, first, edge, size.wrapped * k, None)
-        fill(w.end, edge, edge, size.window * k, n)
-        first = edge
-    fill(actuator.free_length, first, end, size.wrapped * k, None)
-    return np.array(z), window_of
+        segment.extend([number] * len(heights))
+    return np.array(z), np.array(segment)
 
 
 def _graded(length: float, first: float, last: float, most: float) -> FloatArray:
@@ -315,10 +343,10 @@ def _axial_threads(
 ) -> Threads:
     gauze = actuator.gauze
     starts = start_angle() + span * np.arange(around)
-    whole = _lines(gauze, actuator.radius, starts, span, None, size)
-    cache = {None: whole}
-    for window in {w for w in sectors if w is not None}:
-        cache[window] = _lines(gauze, actuator.radius, starts, span, window, size)
+    cache = {
+        window: _lines(gauze, actuator.radius, starts, span, window, size)
+        for window in {None, *sectors}
+    }
     most = max(eta.shape[1] for eta, _ in cache.values())
     zeta, along = np.polynomial.legendre.leggauss(size.orders[2])
     gradient, weight = [], []
@@ -439,7 +467,7 @@ def _single_rings(pitch: float, z: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Hoop threads at the pitch: (zeta, width), each (layers, q)."""
     places = (np.arange(np.ceil(z[-1] / pitch)) + 0.5) * pitch
     rows = []
-    for low, high in zip(z, z[1:], strict=False):
+    for low, high in pairwise(z.tolist()):
         inside = places[(places >= low) & (places < high)]
         rows.append([(2.0 * (p - low) / (high - low) - 1.0, pitch) for p in inside])
     most = max(1, *(len(row) for row in rows))

@@ -10,12 +10,11 @@ from numpy.typing import NDArray
 
 from fem.assembly import Forces, Inverse, System
 from fem.sections import Chart, Pose
+from fem.slack import Switching
 
 FloatArray = NDArray[np.float64]
 Outcome = Literal["converged", "residual", "inverted"]
 
-_CHORD = 0.15  # with a residual that falls this fast the factored tangent is used again
-_CHORDS = 4
 _DAMPINGS = 4
 
 
@@ -91,25 +90,18 @@ def correct(
             return Correction(
                 "converged", pose, pressure, forces, inverse, first, residual, factored, iterations
             )
-        flow = inverse.solve(forces.volume_gradient) if volume is not None else None
-        for _ in range(1 + _CHORDS):
-            before = residual
-            moved = _step(system, chart, pose, pressure, forces, inverse, flow, volume)
-            if moved is None:
-                return Correction(
-                    "inverted", pose, pressure, forces, inverse, first, before, factored,
-                    iterations,
-                )  # fmt: skip
-            pose, pressure, forces = moved
-            iterations += 1
-            residual = relative_residual(forces, pressure, volume)
-            if residual <= tolerance:
-                return Correction(
-                    "converged", pose, pressure, forces, inverse, first, residual, factored,
-                    iterations,
-                )  # fmt: skip
-            if not residual < _CHORD * before:
-                break
+        moved = _step(system, chart, pose, pressure, forces, inverse, volume)
+        if moved is None:
+            return Correction(
+                "inverted", pose, pressure, forces, inverse, first, residual, factored, iterations
+            )
+        pose, pressure, forces = moved
+        iterations += 1
+        residual = relative_residual(forces, pressure, volume)
+        if residual <= tolerance:
+            return Correction(
+                "converged", pose, pressure, forces, inverse, first, residual, factored, iterations
+            )
         if not residual < 1e6 * max(first, 1.0):
             break
     return Correction(
@@ -133,14 +125,15 @@ def _step(
     pressure: float,
     forces: Forces,
     inverse: Inverse,
-    flow: FloatArray | None,
     volume: float | None,
 ) -> tuple[Pose, float, Forces] | None:
     """Take one step, shortened where a brick would turn inside out."""
-    du = inverse.solve(-forces.residual(pressure))
+    threads = Switching(system, inverse, pose.x)
+    du = threads.solve(-forces.residual(pressure))
     rise = 0.0
-    if flow is not None and volume is not None:
+    if volume is not None:
         g = forces.volume_gradient
+        flow = inverse.solve(g)
         rise = (volume - forces.volume - float(g @ du)) / float(g @ flow)
         du = du + rise * flow
     increment = chart.increment(pose, system.expand(pose.x, du))

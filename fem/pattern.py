@@ -64,6 +64,8 @@ class Pattern:
     ----------
     block, far, behind : int
         Sizes; ``behind`` are the unknowns of the ring behind (0 where it is clamped).
+    block_nodes, far_nodes : int arrays
+        The unknowns' places among the coordinates of the layer's nodes.
     source, target : tuples of int arrays
         Entry ``source[k][n]`` of the layer's stiffness goes to ``target[k][n]``; no target
         stands twice in one array.
@@ -72,6 +74,8 @@ class Pattern:
     block: int
     far: int
     behind: int
+    block_nodes: IntArray
+    far_nodes: IntArray
     source: tuple[IntArray, ...]
     target: tuple[IntArray, ...]
 
@@ -110,10 +114,15 @@ def make_pattern(
     far = _number(place[ahead[0]], ahead[1], block) - block
     at, to = _entries(mesh, place, block, far, stride, pair)
     ranks = _ranked(to)
+    flat = place.reshape(-1)
+    numbered = np.flatnonzero(flat >= 0)
+    nodes = numbered[np.argsort(flat[numbered])]
     return Pattern(
         block,
         far,
         0 if clamped else len(unknowns.ring),
+        nodes[:block],
+        nodes[block:],
         tuple(at[r] for r in ranks),
         tuple(to[r] for r in ranks),
     )

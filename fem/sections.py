@@ -60,6 +60,16 @@ class Chart:
         rotation = np.broadcast_to(np.eye(3), (len(self.z), 3, 3))
         return Pose(centre, rotation, self._X - self._nodal(centre), self._X)
 
+    def taut(self, strain: float) -> Pose:
+        """Return the tube stretched a little every way, so that no thread is slack."""
+        rest = self.rest()
+        shape = rest.shape * (1.0 + strain)
+        shape[[0, -1], : self._ring] = rest.shape[[0, -1], : self._ring]
+        straight = Pose(rest.centre, rest.rotation, shape, rest.x)
+        increment = np.zeros(6 * len(self.z) - 3 + shape.size)
+        increment[3 * len(self.z) : 6 * len(self.z) - 3] = strain * rest.offset.ravel()
+        return self.move(straight, increment)
+
     def increment(self, pose: Pose, du: FloatArray) -> FloatArray:
         """Small nodal displacements du (as x) in the chart, to first order."""
         arm = pose.x - self._nodal(pose.centre)

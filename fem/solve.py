@@ -13,7 +13,7 @@ from fem import blas, measure
 from fem.actuator import Actuator
 from fem.assembly import System
 from fem.errors import Attempt
-from fem.loadpath import Equilibrium, Options, follow
+from fem.loadpath import Critical, Equilibrium, Options, Path
 from fem.mesh import DEFAULT_MESH, Mesh, MeshSize, make_mesh
 from fem.sections import Chart
 
@@ -67,21 +67,6 @@ class State:
     def energy_error(self) -> float:
         """How far the stored energy is off the work done, over the work."""
         return abs(self.energy - self.work) / max(abs(self.work), 1e-12)
-
-
-@dataclass(frozen=True)
-class Critical:
-    """Where the path loses its stability.
-
-    Attributes
-    ----------
-    kind : {"limit point", "bifurcation"}
-        A limit point has no equilibrium at higher pressure nearby: the tube balloons.
-    pressure : float, MPa
-    """
-
-    kind: str
-    pressure: float
 
 
 @dataclass(frozen=True)
@@ -152,17 +137,17 @@ def solve(
     begun = time.perf_counter()
     mesh = make_mesh(actuator, size, whole)
     chart = Chart(mesh)
-    history: list[Attempt] = []
     with blas.one_thread():
         system = System(mesh, threads)
         try:
             rest = system.forces(mesh.X)
-            states = [_state(mesh, Equilibrium(0.0, chart.rest(), rest, 0.0, True), 0.0)]
-            work, before = 0.0, (0.0, rest.volume)
-            for found in follow(system, chart, asked, options, history):
-                volume = found.forces.volume
-                work += 0.5 * (found.pressure + before[0]) * (volume - before[1])
-                before = (found.pressure, volume)
+            at_rest = Equilibrium(0.0, chart.rest(), rest, np.nan, 0.0, True)
+            states = [_state(mesh, at_rest, 0.0)]
+            path = Path(system, chart, options)
+            before, work = at_rest, 0.0
+            for found in path.follow(asked):
+                work += work_between(before, found)
+                before = found
                 if progress is not None:
                     progress(found.pressure)
                 if found.asked:
@@ -172,12 +157,22 @@ def solve(
     return Solution(
         mesh=mesh,
         states=tuple(states),
-        critical=None,
-        history=tuple(history),
-        newton_iterations=sum(a.iterations for a in history),
-        factorisations=0,
+        critical=path.critical,
+        history=tuple(path.history),
+        newton_iterations=sum(a.iterations for a in path.history),
+        factorisations=sum(a.factorisations for a in path.history),
         seconds=time.perf_counter() - begun,
     )
+
+
+def work_between(before: Equilibrium, after: Equilibrium) -> float:
+    """Work of the pressure between two states, N mm: V is a cubic in p with dV/dp at both ends."""
+    rise = after.pressure - before.pressure
+    V0, V1 = before.forces.volume, after.forces.volume
+    area = 0.5 * (V0 + V1) * rise  # of V dp
+    if np.isfinite(before.compliance) and rise > 0.0:
+        area += rise**2 / 12.0 * (before.compliance - after.compliance)
+    return after.pressure * V1 - before.pressure * V0 - area
 
 
 def _state(mesh: Mesh, found: Equilibrium, work: float) -> State:
