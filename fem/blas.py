@@ -38,6 +38,9 @@ def _function(module: Any, name: str, arguments: int) -> Callable[..., None]:
 _dpotrf = _function(cython_lapack, "dpotrf", 5)
 _dtrsm = _function(cython_blas, "dtrsm", 11)
 _dsyrk = _function(cython_blas, "dsyrk", 10)
+_dtrsv = _function(cython_blas, "dtrsv", 8)
+_STRIDE = ctypes.c_int(1)
+_FEW = 3  # right sides up to which one at a time is quicker
 _ONE, _MINUS = ctypes.c_double(1.0), ctypes.c_double(-1.0)
 _ref = ctypes.byref
 
@@ -72,8 +75,15 @@ def solve_rows(U: FloatArray, rows: FloatArray, transposed: bool) -> None:
     if rows.size == 0:
         return
     n, k = ctypes.c_int(rows.shape[1]), ctypes.c_int(rows.shape[0])
+    side = b"T" if transposed else b"N"
+    if k.value <= _FEW:
+        for row in rows:
+            _dtrsv(
+                b"L", side, b"N", _ref(n), U.ctypes.data, _ref(n), row.ctypes.data, _ref(_STRIDE)
+            )
+        return
     _dtrsm(
-        b"L", b"L", b"T" if transposed else b"N", b"N", _ref(n), _ref(k), _ref(_ONE),
+        b"L", b"L", side, b"N", _ref(n), _ref(k), _ref(_ONE),
         U.ctypes.data, _ref(n), rows.ctypes.data, _ref(n),
     )  # fmt: skip
 
@@ -94,7 +104,7 @@ def _thread_switches() -> tuple[tuple[Any, Any], ...]:
     """Getter and setter of the thread count of every OpenBLAS that numpy and scipy brought."""
     found = []
     for package in (np, scipy):
-        home = Path(package.__file__).parent
+        home = Path(str(package.__file__)).parent
         for folder in (home.parent / f"{package.__name__}.libs", home / ".dylibs"):
             for path in sorted(folder.glob("*openblas*")):
                 library = ctypes.CDLL(str(path))

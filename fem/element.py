@@ -102,7 +102,7 @@ class Reference:
 
     @cached_property
     def pairs(self) -> FloatArray:
-        """w dN_a,j dN_b,l: (9 q, n * n) with rows (j, l, point), mm."""
+        """Products w dN_a,j dN_b,l: (9 q, n * n) with rows (j, l, point), mm."""
         q, n = len(self.weights), self.dN.shape[1]
         dN = self.dN.reshape(3, q, n)
         products = np.einsum("q,jqa,lqb->jlqab", self.weights, dN, dN)

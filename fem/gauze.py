@@ -108,7 +108,8 @@ class ThreadState:
 
 def stretch(threads: Threads, x: FloatArray) -> FloatArray:
     """Stretch at the thread points, for face nodes x (E, n, 3): (E, q)."""
-    return np.sqrt(np.einsum("eqi,eqi->eq", *[threads.gradient @ x] * 2))
+    lam: FloatArray = np.linalg.norm(threads.gradient @ x, axis=2)
+    return lam
 
 
 def respond(gauze: Gauze, threads: Threads, x: FloatArray, tangent: bool) -> ThreadState:

@@ -108,6 +108,7 @@ class Path:
     def __init__(self, system: System, chart: Chart, options: Options) -> None:
         self._system, self._chart, self._options = system, chart, options
         self._known: list[Equilibrium] = []
+        self._careful = False
         self.history: list[Attempt] = []
         self.critical: Critical | None = None
 
@@ -131,6 +132,7 @@ class Path:
                 found, first = self._try(trial, None, asked)
                 if found is not None:
                     step = (trial - pressure) * _rate(options.aim / first)
+                    self._careful = step < 5.0 * options.smallest * mu
                     pressure = trial
                     yield found
                     continue
@@ -146,7 +148,8 @@ class Path:
         self, pressure: float, volume: float | None, asked: bool
     ) -> tuple[Equilibrium | None, float]:
         """Predict and correct; give the equilibrium and the prediction's residual."""
-        tolerance = self._options.tolerance if asked else self._options.between
+        loose = not (asked or self._careful)
+        tolerance = self._options.between if loose else self._options.tolerance
         pose, pressure = self._predict(pressure, volume)
         done = correct(self._system, self._chart, pose, pressure, tolerance, volume)
         outcome: str = done.outcome
@@ -160,6 +163,7 @@ class Path:
             Attempt(done.pressure, done.iterations, done.factored, done.residual, outcome)
         )
         if outcome != "converged":
+            self._careful = True  # what is extrapolated from must be right from now on
             return None, done.first
         found = Equilibrium(done.pressure, done.pose, done.forces, flow, done.residual, asked)
         self._known = [*self._known[-_ORDER:], found]
@@ -195,6 +199,7 @@ class Path:
         """
         if len(self._known) < 2:
             raise self._failure(blocked)
+        self._careful = True
         last = self._known[-1]
         grow = max(last.compliance * step, 1e-5 * last.forces.volume)
         least = 1e-3 * grow

@@ -198,27 +198,27 @@ def tangent(
     C, B = k.C * b2, k.B * b2
     T = S + S
     H = k.H
-    for n, (i, m) in enumerate(PAIRS):
+    for pair, (i, m) in enumerate(PAIRS):
         for j in range(3):
-            for l in range(3):
-                entry = A[n, j, l]
-                np.multiply(Q[i, j], H[m, l], out=entry)
-                np.multiply(H[i, j], Q[m, l], out=product)
+            for n in range(3):
+                entry = A[pair, j, n]
+                np.multiply(Q[i, j], H[m, n], out=entry)
+                np.multiply(H[i, j], Q[m, n], out=product)
                 entry += product
-                np.multiply(T[i, j], S[m, l], out=product)
+                np.multiply(T[i, j], S[m, n], out=product)
                 entry += product
-                np.multiply(S[i, l], S[m, j], out=product)
+                np.multiply(S[i, n], S[m, j], out=product)
                 entry -= product
                 if i == m:
-                    entry -= C[_pair(j, l)]
-                if j == l:
-                    entry -= B[n]
+                    entry -= C[_pair(j, n)]
+                if j == n:
+                    entry -= B[pair]
                     if i == m:
                         entry += iso
-                if i != m and j != l:
-                    # epsilon_imr epsilon_jls F_rs: r and s are the indices left over
-                    r, s = 3 - i - m, 3 - j - l
-                    if (m == _NEXT[i]) == (l == _NEXT[j]):
+                if i != m and j != n:
+                    # epsilon_imr epsilon_jns F_rs: r and s are the indices left over
+                    r, s = 3 - i - m, 3 - j - n
+                    if (m == _NEXT[i]) == (n == _NEXT[j]):
                         entry += F[r, s]
                     else:
                         entry -= F[r, s]

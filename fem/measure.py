@@ -13,7 +13,8 @@ from scipy.spatial import cKDTree
 
 from fem import gauze
 from fem.element import face_nodes, natural_nodes, shape
-from fem.mesh import Mesh, start_angle
+from fem.mesh import Mesh
+from fem.meshsize import start_angle
 from fem.sections import rotation_matrix, rotation_vector
 
 FloatArray = NDArray[np.float64]
@@ -150,7 +151,7 @@ def surface_weights(mesh: Mesh, phi: float) -> tuple[NDArray[np.int64], FloatArr
 def surface_line(mesh: Mesh, x: FloatArray, phi: float) -> FloatArray:
     """Surface points at phi on all rings: (layers + 1, 3), mm."""
     nodes, weights, mirror = surface_weights(mesh, phi)
-    line = np.einsum("n,knj->kj", weights, x[:, nodes])
+    line: FloatArray = np.einsum("n,knj->kj", weights, x[:, nodes])
     line[:, 0] *= mirror
     return line
 

@@ -17,51 +17,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.actuator import Actuator, Window
-from fem.element import Kind, Reference, face_nodes, natural_nodes, reference, shape
-from fem.gauze import Gauze, Threads
+from fem.actuator import Actuator
+from fem.element import Reference, face_nodes, natural_nodes, reference
+from fem.gauze import Threads
+from fem.meshsize import DEFAULT_MESH, MeshSize, one_brick, start_angle
+from fem.weave import axial_threads, hoop_threads
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 _GROWTH = 2.0
 _HALF = np.pi
-
-
-@dataclass(frozen=True)
-class MeshSize:
-    """How fine the mesh is; lengths in mm for a tube of 20 mm, others in proportion.
-
-    Attributes
-    ----------
-    around : int
-        Bricks in half of the circumference.
-    edge, window, wrapped, end : float
-        Height of a layer at a window's edge, at most in windows and in wrapped sectors, and at
-        the clamped end and the plug. Heights double from one layer to the next.
-    kind : {"hex20", "hex8"}
-    through : int
-        Bricks through the wall.
-    orders : (int, int, int)
-        Gauss points through the wall, around, along.
-    mean_dilatation : bool
-        Take the volume change from the brick's mean: the cure that 8-node bricks need.
-    """
-
-    around: int = 8
-    edge: float = 0.5
-    window: float = 2.5
-    wrapped: float = 8.0
-    end: float = 2.0
-    kind: Kind = "hex20"
-    through: int = 1
-    orders: tuple[int, int, int] = (2, 3, 2)
-    mean_dilatation: bool = False
-
-
-DEFAULT_MESH = MeshSize()
-# The paper's: 8-node bricks of 1 mm, two through the wall.
-PAPER_MESH = MeshSize(31, 1.0, 1.0, 1.0, 1.0, "hex8", 2, (2, 2, 2), mean_dilatation=True)
 
 
 @dataclass(frozen=True)
@@ -157,7 +123,7 @@ def make_mesh(actuator: Actuator, size: MeshSize = DEFAULT_MESH, whole: bool = F
         mid=len(mid_at),
         bricks=bricks,
         brick=tuple(
-            reference(size.kind, _one_brick(actuator, size, span, n), size.orders)
+            reference(size.kind, one_brick(actuator, size, span, n), size.orders)
             for n in range(size.through)
         ),
         outer=bricks[-around:, -m:],
@@ -199,7 +165,7 @@ def _along(
     around: int,
     span: float,
 ) -> dict[str, Any]:
-    """What of a mesh depends on the places along the tube, and on the sectors."""
+    """Make what of a mesh depends on the places along the tube, and on the sectors."""
     X = np.zeros((len(z), len(ring_at) + len(mid_at), 3))
     X[:, : len(ring_at), :2] = ring_at
     X[:, : len(ring_at), 2] = z[:, None]
@@ -210,14 +176,9 @@ def _along(
         "z": z,
         "segment": segment,
         "X": X,
-        "axial": _axial_threads(actuator, size, np.diff(z), sectors, around, span),
-        "hoop": _hoop_threads(actuator, size, z, around, span),
+        "axial": axial_threads(actuator, size, np.diff(z), sectors, around, span),
+        "hoop": hoop_threads(actuator, size, z, around, span),
     }
-
-
-def start_angle() -> float:
-    """Angular position where the first brick begins: the side that faces the object."""
-    return -0.5 * np.pi
 
 
 @dataclass(frozen=True)
@@ -231,7 +192,7 @@ class _Places:
 
 
 def _places(size: MeshSize, around: int, half: bool) -> _Places:
-    """Number the nodes of a section by their place on a grid of half bricks."""
+    """Put the nodes of a section in order, known by their place on a grid of half bricks."""
     step = 1 if size.kind == "hex20" else 2
     deep, wide = 2 * size.through, 2 * around
     span = (_HALF if half else 2.0 * _HALF) / wide
@@ -271,15 +232,6 @@ def _xy(actuator: Actuator, places: list[tuple[float, float]]) -> FloatArray:
     r = actuator.radius - actuator.wall * (1.0 - share)
     xy: FloatArray = np.column_stack([r * np.cos(phi), r * np.sin(phi)])
     return xy
-
-
-def _one_brick(actuator: Actuator, size: MeshSize, span: float, deep: int) -> FloatArray:
-    """Nodes of a brick 2 mm high, ``deep`` bricks from the inside, its middle on +x."""
-    natural = natural_nodes(size.kind).astype(float)
-    share = (deep + 0.5 * (natural[:, 0] + 1.0)) / size.through
-    r = actuator.radius - actuator.wall * (1.0 - share)
-    phi = 0.5 * span * natural[:, 1]
-    return np.column_stack([r * np.cos(phi), r * np.sin(phi), natural[:, 2]])
 
 
 def _symmetry(xy: FloatArray, half: bool) -> NDArray[np.bool_]:
@@ -323,153 +275,3 @@ def _graded(length: float, first: float, last: float, most: float) -> FloatArray
             total += b
             b = min(_GROWTH * b, most)
     return np.array(left + right[::-1]) * (length / total)
-
-
-def _face_gradient(size: MeshSize, eta: FloatArray, zeta: FloatArray) -> FloatArray:
-    """Shape derivatives of an outer face by (eta, zeta): (..., n, 2)."""
-    m = face_nodes(size.kind)
-    nodes = natural_nodes(size.kind)[-m:, 1:]
-    _, dN = shape(nodes, np.column_stack([eta.ravel(), zeta.ravel()]))
-    return dN.reshape(*eta.shape, m, 2)
-
-
-def _axial_threads(
-    actuator: Actuator,
-    size: MeshSize,
-    heights: FloatArray,
-    sectors: list[Window | None],
-    around: int,
-    span: float,
-) -> Threads:
-    gauze = actuator.gauze
-    starts = start_angle() + span * np.arange(around)
-    cache = {
-        window: _lines(gauze, actuator.radius, starts, span, window, size)
-        for window in {None, *sectors}
-    }
-    most = max(eta.shape[1] for eta, _ in cache.values())
-    zeta, along = np.polynomial.legendre.leggauss(size.orders[2])
-    gradient, weight = [], []
-    for window, h in zip(sectors, heights, strict=True):
-        eta, width = (np.pad(v, ((0, 0), (0, most - v.shape[1]))) for v in cache[window])
-        shape_at = np.broadcast_to(eta[:, :, None], (*eta.shape, len(zeta)))
-        dN = _face_gradient(size, shape_at, np.broadcast_to(zeta, shape_at.shape))
-        gradient.append(dN[..., 1].reshape(around, -1, dN.shape[-2]) * (2.0 / h))
-        weight.append((gauze.stiffness * width[:, :, None] * along * (0.5 * h)).reshape(around, -1))
-    return Threads(np.concatenate(gradient), np.concatenate(weight))
-
-
-def _lines(
-    gauze: Gauze,
-    radius: float,
-    starts: FloatArray,
-    span: float,
-    window: Window | None,
-    size: MeshSize,
-) -> tuple[FloatArray, FloatArray]:
-    """Where uncut axial threads cross each face of a layer: (eta, width in mm), each (around, q).
-
-    The smeared gauze takes Gauss points within the covered part of each face, so that the edge
-    of a sector need not lie on the mesh.
-    """
-    if gauze.pitch is not None:
-        return _single_lines(gauze, radius, starts, span, window)
-    points, w = np.polynomial.legendre.leggauss(size.orders[1])
-    parts = np.array([_covered(gauze, start, span, window) for start in starts])
-    a, b = parts[..., 0, None], parts[..., 1, None]
-    eta = 0.5 * (a + b) + 0.5 * (b - a) * points
-    width = 0.5 * (b - a) * w * (0.5 * span * radius)
-    keep = (b - a)[..., 0].any(axis=0)
-    keep[0] = True
-    flat = (len(starts), -1)
-    return eta[:, keep].reshape(flat), width[:, keep].reshape(flat)
-
-
-def _covered(
-    gauze: Gauze, start: float, span: float, window: Window | None
-) -> list[tuple[float, float]]:
-    """The covered parts of a face in eta, at most two."""
-    if window is None:
-        return [(-1.0, 1.0), (0.0, 0.0)]
-    half = 0.5 * (window.alpha + gauze.allowance)
-    parts = []
-    for turn in (-2.0 * np.pi, 0.0, 2.0 * np.pi):
-        middle = window.center - np.floor((window.center - start) / (2.0 * np.pi)) * 2.0 * np.pi
-        low = max(middle + turn - half, start)
-        high = min(middle + turn + half, start + span)
-        if high > low:
-            parts.append((2.0 * (low - start) / span - 1.0, 2.0 * (high - start) / span - 1.0))
-    return (parts + [(0.0, 0.0)] * 2)[:2]
-
-
-def _single_lines(
-    gauze: Gauze, radius: float, starts: FloatArray, span: float, window: Window | None
-) -> tuple[FloatArray, FloatArray]:
-    """Single threads at the pitch, the first one facing the object."""
-    assert gauze.pitch is not None
-    count = max(4, round(2.0 * np.pi * radius / gauze.pitch))
-    step = 2.0 * np.pi / count
-    rows = []
-    for start in starts:
-        row = []
-        for k in range(count + 1):
-            phi = start_angle() + k * step
-            eta = 2.0 * (phi - start) / span - 1.0
-            if not -1.0 - 1e-9 <= eta <= 1.0 + 1e-9:
-                continue
-            # A thread on the border of two faces counts half in each.
-            share = 0.5 if abs(abs(eta) - 1.0) < 1e-9 else 1.0
-            if window is not None:
-                off = (phi - window.center + np.pi) % (2.0 * np.pi) - np.pi
-                if abs(off) > 0.5 * (window.alpha + gauze.allowance) + 1e-9:
-                    continue
-            row.append((float(np.clip(eta, -1.0, 1.0)), share * step * radius))
-        rows.append(row)
-    most = max(1, *(len(row) for row in rows))
-    table = np.array([row + [(0.0, 0.0)] * (most - len(row)) for row in rows])
-    return table[..., 0], table[..., 1]
-
-
-def _hoop_threads(
-    actuator: Actuator, size: MeshSize, z: FloatArray, around: int, span: float
-) -> Threads:
-    gauze, heights = actuator.gauze, np.diff(z)
-    rule, w = np.polynomial.legendre.leggauss(size.orders[2])
-    zeta = np.broadcast_to(rule, (len(heights), len(rule)))
-    width = 0.5 * heights[:, None] * w
-    if gauze.pitch is not None:
-        zeta, width = _single_rings(gauze.pitch, z)
-    eta, around_w = np.polynomial.legendre.leggauss(size.orders[1])
-    shape_at = (len(heights), zeta.shape[1], len(eta))
-    dN = _face_gradient(
-        size, np.broadcast_to(eta, shape_at), np.broadcast_to(zeta[:, :, None], shape_at)
-    )
-    arc = 0.5 * span * actuator.radius
-    gradient = dN[..., 0].reshape(len(heights), 1, -1, dN.shape[-2])
-    # The face is a parabola, not quite an arc: along the thread by its own speed.
-    speed = np.linalg.norm(gradient @ _face_positions(actuator, size, span), axis=-1)
-    gradient = gradient / speed[..., None]
-    weight = gauze.stiffness * (width[:, :, None] * around_w * arc).reshape(len(heights), 1, -1)
-    ones = np.ones((1, around, 1))
-    return Threads(
-        (gradient * ones[..., None]).reshape(-1, *gradient.shape[2:]),
-        (weight * (speed / arc) * ones).reshape(len(heights) * around, -1),
-    )
-
-
-def _face_positions(actuator: Actuator, size: MeshSize, span: float) -> FloatArray:
-    brick = _one_brick(actuator, size, span, size.through - 1)[-face_nodes(size.kind) :]
-    flat: FloatArray = brick * [1.0, 1.0, 0.0]
-    return flat
-
-
-def _single_rings(pitch: float, z: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Hoop threads at the pitch: (zeta, width), each (layers, q)."""
-    places = (np.arange(np.ceil(z[-1] / pitch)) + 0.5) * pitch
-    rows = []
-    for low, high in pairwise(z.tolist()):
-        inside = places[(places >= low) & (places < high)]
-        rows.append([(2.0 * (p - low) / (high - low) - 1.0, pitch) for p in inside])
-    most = max(1, *(len(row) for row in rows))
-    table = np.array([row + [(0.0, 0.0)] * (most - len(row)) for row in rows])
-    return table[..., 0], table[..., 1]

@@ -36,7 +36,7 @@ class Unknowns:
 
     @classmethod
     def of(cls, mesh: Mesh) -> Unknowns:
-        """Number the unknowns of a mesh."""
+        """Lay out the unknowns of a mesh."""
         free = [np.flatnonzero(~held.ravel()) for held in (mesh.fixed_ring, mesh.fixed_mid)]
         return cls(free[0], free[1], 3 if mesh.half else 6, mesh.layers)
 

@@ -46,9 +46,11 @@ class Plug:
         return whole
 
     def _scaled(self, values: FloatArray) -> FloatArray:
-        scale = np.array([1.0, 1.0, 1.0, *[1.0 / self._radius] * 3])
-        values = values * scale if values.ndim == 1 else values * np.outer(scale, scale)
-        return values[self._keep] if values.ndim == 1 else values[np.ix_(self._keep, self._keep)]
+        """Take a gradient (6,) or Hessian (6, 6) by offset and spin to the unknowns."""
+        scale = np.array([1.0, 1.0, 1.0, *[1.0 / self._radius] * 3])[self._keep]
+        if values.ndim == 1:
+            return np.asarray(values[self._keep] * scale)
+        return np.asarray(values[np.ix_(self._keep, self._keep)] * np.outer(scale, scale))
 
     def cap_volume(self, x: FloatArray) -> tuple[float, FloatArray]:
         """Volume between the disc and the origin, and its gradient by the unknowns."""

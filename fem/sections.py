@@ -152,8 +152,8 @@ class Chart:
             spin[:, 0] = sums[:, 0] / sums[:, 1]
             return spin
         outer = arm[..., :, None] * arm[..., None, :]
-        inertia = (arm**2).sum(axis=-1)[..., None, None] * np.eye(3) - outer
-        packed = np.concatenate([moment, inertia.reshape(*arm.shape[:-1], 9)], axis=-1)
+        tensor = (arm**2).sum(axis=-1)[..., None, None] * np.eye(3) - outer
+        packed = np.concatenate([moment, tensor.reshape(*arm.shape[:-1], 9)], axis=-1)
         sums = self._sum(packed)
         solved: FloatArray = np.linalg.solve(sums[:, 3:].reshape(-1, 3, 3), sums[:, :3, None])
         return solved[..., 0]

@@ -56,7 +56,8 @@ class Switching:
         self._compliance = np.zeros((0, 0))
 
     def _gradient(self, nodal: FloatArray) -> FloatArray:
-        return self._threads.gradient @ nodal.reshape(-1, 3)[self._faces]
+        moved: FloatArray = self._threads.gradient @ nodal.reshape(-1, 3)[self._faces]
+        return moved
 
     def solve(self, rhs: FloatArray) -> FloatArray:
         """Step (count,) that balances rhs (count,) with the threads' own law."""
@@ -76,9 +77,7 @@ class Switching:
             if not self._choose(load, _ENOUGH * float(np.linalg.norm(rhs))):
                 return first
             points = self._points
-            extra = self._balance(
-                start.flat[points], lam.flat[points], force.flat[points], points
-            )
+            extra = self._balance(start.flat[points], lam.flat[points], force.flat[points], points)
             used[...] = 0.0
             used.flat[points] = extra
             du = self._inverse.solve(rhs - self._spread(w * used))

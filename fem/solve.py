@@ -14,7 +14,8 @@ from fem.actuator import Actuator
 from fem.assembly import System
 from fem.errors import Attempt
 from fem.loadpath import Critical, Equilibrium, Options, Path
-from fem.mesh import DEFAULT_MESH, Mesh, MeshSize, make_mesh
+from fem.mesh import Mesh, make_mesh
+from fem.meshsize import DEFAULT_MESH, MeshSize
 from fem.sections import Chart
 
 FloatArray = NDArray[np.float64]
@@ -65,8 +66,8 @@ class State:
 
     @property
     def energy_error(self) -> float:
-        """How far the stored energy is off the work done, over the work."""
-        return abs(self.energy - self.work) / max(abs(self.work), 1e-12)
+        """How far the stored energy is off the work done, over the work; 0 at rest."""
+        return abs(self.energy - self.work) / self.work if self.work > 0.0 else 0.0
 
 
 @dataclass(frozen=True)

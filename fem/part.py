@@ -1,0 +1,259 @@
+"""One half of the elimination: the layers from an end of the tube to its middle."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem import gauze, solid
+from fem.gauze import Threads
+from fem.mesh import Mesh
+from fem.pattern import Pattern, Unknowns, make_pattern
+from fem.pivot import Pivot
+from fem.plug import Plug
+from fem.pressure import face_volumes
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+_CHUNK = 512  # bricks at a time, so that the arrays of one step stay in the cache
+
+
+class Part:
+    """The layers from one end of the tube to the middle, eliminated from the end inward.
+
+    Attributes
+    ----------
+    pivots : dict of layer to Pivot
+    couplings : dict of layer to (block, far) arrays
+        Reduced couplings to the ring ahead.
+    next : (far, far)
+        What has been added to the next pivot, its upper triangle.
+    internal, gradient : (layers + 1, ring + mid, 3)
+        This part's nodal forces: of the stored energy (N) and of a unit pressure (mm^2).
+    energy, volume, least_J : float
+    """
+
+    def __init__(self, mesh: Mesh, unknowns: Unknowns, layers: range, *, from_root: bool) -> None:
+        self.mesh, self.unknowns, self.from_root = mesh, unknowns, from_root
+        self.order = layers if from_root else layers[::-1]
+        around, n = mesh.around, mesh.bricks.shape[1]
+        self.chunks = _chunks(self.order, max(1, _CHUNK // len(mesh.bricks)))
+        self.pair = max((len(c) for c in self.chunks), default=0) * around * n * n
+        self.work = solid.Workspace()
+
+        def pattern(*, clamped: bool) -> Pattern:
+            return make_pattern(
+                mesh, unknowns, from_root=from_root, clamped=clamped,
+                stride=6 * self.pair, pair=self.pair,
+            )  # fmt: skip
+
+        plain = pattern(clamped=False)
+        self.patterns = dict.fromkeys(self.order, plain)
+        if from_root and layers:
+            self.patterns[0] = pattern(clamped=True)
+        self.scratch = {p: np.zeros(p.size) for p in set(self.patterns.values())}
+        sizes = {
+            layer: p.block + (unknowns.plug - p.behind if self._is_plug(layer) else 0)
+            for layer, p in self.patterns.items()
+        }
+        self.pivots = {layer: Pivot(size) for layer, size in sizes.items()}
+        self.couplings = {layer: np.empty((size, plain.far)) for layer, size in sizes.items()}
+        self.next = np.zeros((plain.far, plain.far))
+        self.internal = np.zeros_like(mesh.X)
+        self.gradient = np.zeros_like(mesh.X)
+        self.energy = self.volume = 0.0
+        self.least_J = np.inf
+
+    def _is_plug(self, layer: int) -> bool:
+        return layer == self.mesh.layers - 1
+
+    def evaluate(self, x: FloatArray, pressure: float, plug: Plug | None) -> None:
+        """Sum this part's forces; with ``plug`` factor its layers too."""
+        self.internal[...] = 0.0
+        self.gradient[...] = 0.0
+        self.next[...] = 0.0
+        self.energy = self.volume = 0.0
+        self.least_J = np.inf
+        for chunk in self.chunks:
+            self._add_forces(chunk, x, pressure, plug is not None)
+            if not self.least_J > 0.0:
+                return
+            if plug is not None:
+                for layer in chunk if self.from_root else chunk[::-1]:
+                    self._eliminate(layer, layer - chunk.start, x, pressure, plug)
+
+    def _add_forces(self, chunk: range, x: FloatArray, pressure: float, tangent: bool) -> None:
+        mesh, work = self.mesh, self.work
+        around, n, m = mesh.around, mesh.bricks.shape[1], mesh.outer.shape[1]
+        E = len(chunk) * around
+        first = np.asarray(chunk)[:, None, None] * (mesh.ring + mesh.mid)
+        flat = x.reshape(-1, 3)
+        heights = np.repeat(mesh.heights[chunk.start : chunk.stop], around)
+        internal, gradient = self.internal.reshape(-1, 3), self.gradient.reshape(-1, 3)
+        through = mesh.size.through
+        stiffness = work.get("stiffness", (through, 6, self.pair))[:, :, : E * n * n]
+        for deep in range(through):
+            bricks = mesh.bricks[deep * around : (deep + 1) * around]
+            nodes = (first + bricks).reshape(E, n)
+            state = solid.respond(
+                mesh.actuator.rubber,
+                mesh.brick[deep],
+                heights,
+                np.ascontiguousarray(flat[nodes].transpose(2, 1, 0)),
+                work,
+                stiffness[deep].reshape(6, E, n * n) if tangent else None,
+                mean_dilatation=mesh.size.mean_dilatation,
+            )
+            self.least_J = min(self.least_J, state.least_J)
+            if not self.least_J > 0.0:
+                return
+            self.energy += float(state.energy.sum())
+            _scatter(internal, nodes, state.force.transpose(2, 1, 0))
+        faces = slice(chunk.start * around, chunk.stop * around)
+        outer = (first + mesh.outer).reshape(E, m)
+        skin = stiffness[-1].reshape(6, E, n, n)[:, :, n - m :, n - m :]
+        for family in (mesh.axial, mesh.hoop):
+            threads = Threads(family.gradient[faces], family.weight[faces])
+            pull = gauze.respond(mesh.actuator.gauze, threads, flat[outer], tangent)
+            self.energy += float(pull.energy.sum())
+            _scatter(internal, outer, pull.force)
+            if pull.stiffness is not None:
+                skin += pull.stiffness.transpose(1, 0, 2).reshape(6, E, m, m)
+        inner = (first + mesh.inner).reshape(E, m)
+        volume, dV, h = face_volumes(np.ascontiguousarray(flat[inner].transpose(2, 1, 0)), tangent)
+        self.volume += float(volume.sum())
+        _scatter(gradient, inner, dV.transpose(2, 1, 0))
+        if h is not None:
+            wall = stiffness[0].reshape(6, E, n, n)[:, :, :m, :m]
+            h = pressure * h.transpose(0, 3, 1, 2)
+            wall[1] -= h[2]
+            wall[2] += h[1]
+            wall[4] -= h[0]
+
+    def _eliminate(
+        self, layer: int, place: int, x: FloatArray, pressure: float, plug: Plug
+    ) -> None:
+        pattern, pivot, coupling = self.patterns[layer], self.pivots[layer], self.couplings[layer]
+        b, r = pattern.block, pattern.far
+        stiffness = self.work.get("stiffness", (self.mesh.size.through * 6 * self.pair,))
+        source = stiffness[place * self.mesh.around * self.mesh.bricks.shape[1] ** 2 :]
+        step = self.scratch[pattern]
+        for rank, (at, to) in enumerate(zip(pattern.source, pattern.target, strict=True)):
+            values = self.work.get("entries", at.shape)
+            np.take(source, at, out=values, mode="clip")  # clip: without a check of every index
+            if rank == 0:
+                step[to] = values
+            else:
+                step[to] += values
+        own = step[: b * b].reshape(b, b)
+        own_coupling = step[b * b : b * (b + r)].reshape(b, r)
+        added = self.next[: pattern.behind, : pattern.behind]
+        if self._is_plug(layer):
+            load = (self.internal[-1] - pressure * self.gradient[-1])[: self.mesh.ring]
+            own, own_coupling = plug.condense(x, load, pressure, own, own_coupling)
+            added = added[:0, :0]  # there is no layer before it
+        np.copyto(coupling, own_coupling)
+        pivot.factorise(own, added)
+        np.copyto(self.next, step[b * (b + r) :].reshape(r, r))
+        pivot.reduce(coupling)
+        pivot.update(self.next, coupling)
+
+    def forward(self, rings: FloatArray, mids: FloatArray, plug: FloatArray) -> FloatArray:
+        """Reduce right sides in place; return what to take from the middle ring's (k, far)."""
+        carry = np.zeros((len(rings), self.next.shape[0]))
+        for layer in self.order:
+            rows = self._rows(layer, rings, mids, plug)
+            if self.patterns[layer].behind and not self._is_plug(layer):
+                rows[:, mids.shape[2] :] -= carry
+            self.pivots[layer].forward(rows)
+            carry = rows @ self.couplings[layer]
+            self._put(layer, rows, rings, mids, plug)
+        return carry
+
+    def backward(
+        self, rings: FloatArray, mids: FloatArray, plug: FloatArray, ahead: FloatArray
+    ) -> None:
+        """Solve in place from the middle ring's values ``ahead`` (k, far) to the end."""
+        for layer in self.order[::-1]:
+            pivot = self.pivots[layer]
+            rows = self._rows(layer, rings, mids, plug)
+            known = ahead @ self.couplings[layer].T
+            rows -= known if pivot.signs is None else known * pivot.signs
+            pivot.backward(rows)
+            ahead = rows[:, mids.shape[2] :]
+            self._put(layer, rows, rings, mids, plug)
+
+    def compliance(
+        self, layers: IntArray, loads: FloatArray, T: FloatArray, result: FloatArray
+    ) -> tuple[IntArray, FloatArray]:
+        """Add this part's share of L^-1 A squared; return the patterns and what is left of them.
+
+        ``loads`` (s, 3 nodes of a layer), ``T`` the motions of the last ring by the plug's.
+        """
+        active = np.zeros(0, dtype=np.int64)
+        ahead = np.zeros((0, self.next.shape[0]))
+        own_mids = len(self.unknowns.mid)
+        for layer in self.order:
+            pattern = self.patterns[layer]
+            fresh = np.flatnonzero(layers == layer)
+            if len(active) + len(fresh) == 0:
+                continue
+            pivot = self.pivots[layer]
+            rows = np.zeros((len(active) + len(fresh), len(pivot.factor)))
+            if len(active):
+                rows[: len(active), own_mids:] = ahead
+            own = loads[fresh][:, pattern.block_nodes]
+            if self._is_plug(layer):
+                rows[len(active) :, :own_mids] = own[:, :own_mids]
+                rows[len(active) :, own_mids:] = loads[fresh][:, -T.shape[0] :] @ T
+            else:
+                rows[len(active) :] = own
+            pivot.forward(rows)
+            active = np.concatenate([active, fresh])
+            result[np.ix_(active, active)] += rows @ rows.T
+            ahead = -(rows @ self.couplings[layer])
+            ahead[len(active) - len(fresh) :] += loads[fresh][:, pattern.far_nodes]
+        return active, ahead
+
+    def _behind(self, layer: int, rings: FloatArray, plug: FloatArray) -> FloatArray | None:
+        if self._is_plug(layer):
+            return plug
+        if self.patterns[layer].behind == 0:
+            return None
+        return rings[:, layer - 1 if self.from_root else layer]
+
+    def _rows(
+        self, layer: int, rings: FloatArray, mids: FloatArray, plug: FloatArray
+    ) -> FloatArray:
+        behind = self._behind(layer, rings, plug)
+        parts = [mids[:, layer]] if behind is None else [mids[:, layer], behind]
+        return np.concatenate(parts, axis=1)
+
+    def _put(
+        self, layer: int, rows: FloatArray, rings: FloatArray, mids: FloatArray, plug: FloatArray
+    ) -> None:
+        own = mids.shape[2]
+        mids[:, layer] = rows[:, :own]
+        behind = self._behind(layer, rings, plug)
+        if behind is not None:
+            behind[...] = rows[:, own:]
+
+
+def _chunks(order: range, most: int) -> list[range]:
+    """Cut layers into ascending ranges of nearly equal length, in the order of elimination."""
+    count = -(-len(order) // most) if len(order) else 0
+    cuts = [round(len(order) * k / count) for k in range(count + 1)] if count else []
+    chunks = [order[a:b] for a, b in pairwise(cuts)]
+    return [chunk if chunk.step > 0 else chunk[::-1] for chunk in chunks]
+
+
+def _scatter(into: FloatArray, nodes: IntArray, values: FloatArray) -> None:
+    """Add values (E, n, 3) to the rows ``nodes`` (E, n) of ``into`` (N, 3)."""
+    low = int(nodes.min())
+    size = int(nodes.max()) - low + 1
+    at = nodes.ravel() - low
+    for i in range(3):
+        into[low : low + size, i] += np.bincount(at, values[..., i].ravel(), size)

@@ -1,0 +1,180 @@
+"""Where the threads run on a mesh's outer faces, and what of them a window leaves uncut."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.actuator import Actuator, Window
+from fem.element import face_nodes, natural_nodes, shape
+from fem.gauze import Gauze, Threads
+from fem.meshsize import MeshSize, one_brick, start_angle
+
+FloatArray = NDArray[np.float64]
+
+
+def _face_gradient(size: MeshSize, eta: FloatArray, zeta: FloatArray) -> FloatArray:
+    """Shape derivatives of an outer face by (eta, zeta): (..., n, 2)."""
+    m = face_nodes(size.kind)
+    nodes = natural_nodes(size.kind)[-m:, 1:]
+    _, dN = shape(nodes, np.column_stack([eta.ravel(), zeta.ravel()]))
+    return dN.reshape(*eta.shape, m, 2)
+
+
+def axial_threads(
+    actuator: Actuator,
+    size: MeshSize,
+    heights: FloatArray,
+    sectors: Sequence[Window | None],
+    around: int,
+    span: float,
+) -> Threads:
+    """Place the axial threads.
+
+    Parameters
+    ----------
+    actuator : Actuator
+    size : MeshSize
+    heights : (layers,) mm
+    sectors : sequence
+        The window of each layer, None where it is wrapped.
+    around : int
+        Faces of a layer.
+    span : float
+        Angle of a face, rad.
+    """
+    gauze = actuator.gauze
+    starts = start_angle() + span * np.arange(around, dtype=float)
+    cache = {
+        window: _lines(gauze, actuator.radius, starts, span, window, size)
+        for window in {None, *sectors}
+    }
+    most = max(eta.shape[1] for eta, _ in cache.values())
+    zeta, along = np.polynomial.legendre.leggauss(size.orders[2])
+    gradient, weight = [], []
+    for window, h in zip(sectors, heights, strict=True):
+        eta, width = (np.pad(v, ((0, 0), (0, most - v.shape[1]))) for v in cache[window])
+        shape_at = np.broadcast_to(eta[:, :, None], (*eta.shape, len(zeta)))
+        dN = _face_gradient(size, shape_at, np.broadcast_to(zeta, shape_at.shape))
+        gradient.append(dN[..., 1].reshape(around, -1, dN.shape[-2]) * (2.0 / h))
+        weight.append((gauze.stiffness * width[:, :, None] * along * (0.5 * h)).reshape(around, -1))
+    return Threads(np.concatenate(gradient), np.concatenate(weight))
+
+
+def _lines(
+    gauze: Gauze,
+    radius: float,
+    starts: FloatArray,
+    span: float,
+    window: Window | None,
+    size: MeshSize,
+) -> tuple[FloatArray, FloatArray]:
+    """Where uncut axial threads cross each face of a layer: (eta, width in mm), each (around, q).
+
+    The smeared gauze takes Gauss points within the covered part of each face, so that the edge
+    of a sector need not lie on the mesh.
+    """
+    if gauze.pitch is not None:
+        return _single_lines(gauze, radius, starts, span, window)
+    points, w = np.polynomial.legendre.leggauss(size.orders[1])
+    parts = np.array([_covered(gauze, start, span, window) for start in starts])
+    a, b = parts[..., 0, None], parts[..., 1, None]
+    eta = 0.5 * (a + b) + 0.5 * (b - a) * points
+    width = 0.5 * (b - a) * w * (0.5 * span * radius)
+    keep = (b - a)[..., 0].any(axis=0)
+    keep[0] = True
+    flat = (len(starts), -1)
+    return eta[:, keep].reshape(flat), width[:, keep].reshape(flat)
+
+
+def _covered(
+    gauze: Gauze, start: float, span: float, window: Window | None
+) -> list[tuple[float, float]]:
+    """Give the covered parts of a face in eta, at most two."""
+    if window is None:
+        return [(-1.0, 1.0), (0.0, 0.0)]
+    half = 0.5 * (window.alpha + gauze.allowance)
+    parts = []
+    for turn in (-2.0 * np.pi, 0.0, 2.0 * np.pi):
+        middle = window.center - np.floor((window.center - start) / (2.0 * np.pi)) * 2.0 * np.pi
+        low = max(middle + turn - half, start)
+        high = min(middle + turn + half, start + span)
+        if high > low:
+            parts.append((2.0 * (low - start) / span - 1.0, 2.0 * (high - start) / span - 1.0))
+    return (parts + [(0.0, 0.0)] * 2)[:2]
+
+
+def _single_lines(
+    gauze: Gauze, radius: float, starts: FloatArray, span: float, window: Window | None
+) -> tuple[FloatArray, FloatArray]:
+    """Single threads at the pitch, the first one facing the object."""
+    assert gauze.pitch is not None
+    count = max(4, round(2.0 * np.pi * radius / gauze.pitch))
+    step = 2.0 * np.pi / count
+    rows = []
+    for start in starts:
+        row = []
+        for k in range(count + 1):
+            phi = start_angle() + k * step
+            eta = 2.0 * (phi - start) / span - 1.0
+            if not -1.0 - 1e-9 <= eta <= 1.0 + 1e-9:
+                continue
+            # A thread on the border of two faces counts half in each.
+            share = 0.5 if abs(abs(eta) - 1.0) < 1e-9 else 1.0
+            if window is not None:
+                off = (phi - window.center + np.pi) % (2.0 * np.pi) - np.pi
+                if abs(off) > 0.5 * (window.alpha + gauze.allowance) + 1e-9:
+                    continue
+            row.append((float(np.clip(eta, -1.0, 1.0)), share * step * radius))
+        rows.append(row)
+    most = max(1, *(len(row) for row in rows))
+    table = np.array([row + [(0.0, 0.0)] * (most - len(row)) for row in rows])
+    return table[..., 0], table[..., 1]
+
+
+def hoop_threads(
+    actuator: Actuator, size: MeshSize, z: FloatArray, around: int, span: float
+) -> Threads:
+    """Place the hoop threads, which no cut severs: on all faces of layers between z (mm)."""
+    gauze, heights = actuator.gauze, np.diff(z)
+    rule, w = np.polynomial.legendre.leggauss(size.orders[2])
+    zeta = np.broadcast_to(rule, (len(heights), len(rule)))
+    width = 0.5 * heights[:, None] * w
+    if gauze.pitch is not None:
+        zeta, width = _single_rings(gauze.pitch, z)
+    eta, around_w = np.polynomial.legendre.leggauss(size.orders[1])
+    shape_at = (len(heights), zeta.shape[1], len(eta))
+    dN = _face_gradient(
+        size, np.broadcast_to(eta, shape_at), np.broadcast_to(zeta[:, :, None], shape_at)
+    )
+    arc = 0.5 * span * actuator.radius
+    gradient = dN[..., 0].reshape(len(heights), 1, -1, dN.shape[-2])
+    # The face is a parabola, not quite an arc: along the thread by its own speed.
+    speed = np.linalg.norm(gradient @ _face_positions(actuator, size, span), axis=-1)
+    gradient = gradient / speed[..., None]
+    weight = gauze.stiffness * (width[:, :, None] * around_w * arc).reshape(len(heights), 1, -1)
+    ones = np.ones((1, around, 1))
+    return Threads(
+        (gradient * ones[..., None]).reshape(-1, *gradient.shape[2:]),
+        (weight * (speed / arc) * ones).reshape(len(heights) * around, -1),
+    )
+
+
+def _face_positions(actuator: Actuator, size: MeshSize, span: float) -> FloatArray:
+    brick = one_brick(actuator, size, span, size.through - 1)[-face_nodes(size.kind) :]
+    flat: FloatArray = brick * [1.0, 1.0, 0.0]
+    return flat
+
+
+def _single_rings(pitch: float, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Hoop threads at the pitch: (zeta, width), each (layers, q)."""
+    places = (np.arange(np.ceil(z[-1] / pitch)) + 0.5) * pitch
+    rows = []
+    for low, high in pairwise(z.tolist()):
+        inside = places[(places >= low) & (places < high)]
+        rows.append([(2.0 * (p - low) / (high - low) - 1.0, pitch) for p in inside])
+    most = max(1, *(len(row) for row in rows))
+    table = np.array([row + [(0.0, 0.0)] * (most - len(row)) for row in rows])
+    return table[..., 0], table[..., 1]
