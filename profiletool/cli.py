@@ -5,22 +5,23 @@ from __future__ import annotations
 import json
 import sys
 import tomllib
-import traceback
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any, Literal, cast
 
 import typer
 
-from profiletool import __version__
-from profiletool.errors import Infeasible, ProfiletoolError, UnreadableInput, UsageError
-
-Debug = Annotated[bool, typer.Option("--debug", help="Show the full traceback of an error.")]
-Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
-FormulaFile = Annotated[
-    Path | None, typer.Option("--formula", help="A formula file (default: the paper's formula).")
-]
+from profiletool import __version__, cli_fe
+from profiletool.console import (
+    Debug,
+    FormulaFile,
+    Json,
+    Quiet,
+    exit_codes,
+    numbers,
+    progress_bar,
+    speaker,
+)
+from profiletool.errors import Infeasible, NotVerified, UnreadableInput, UsageError
 
 app = typer.Typer(
     name="profiletool",
@@ -63,26 +64,6 @@ def _run(commands: typer.Typer) -> None:
     sys.exit(code or 0)
 
 
-@contextmanager
-def _exit_codes(debug: bool) -> Iterator[None]:
-    """Turn our errors into one line on stderr and their exit code."""
-    try:
-        yield
-    except ProfiletoolError as error:
-        if debug:
-            traceback.print_exc()
-        typer.echo(f"error: {error}", err=True)
-        raise typer.Exit(error.exit_code) from error
-    except (typer.Exit, typer.Abort):
-        raise
-    except Exception as error:  # the last resort: a fault of ours, never a traceback unasked
-        if debug:
-            traceback.print_exc()
-        what = " ".join(f"{type(error).__name__}: {error}".split())
-        typer.echo(f"error: a fault in profiletool ({what}); run again with --debug", err=True)
-        raise typer.Exit(1) from error
-
-
 def _version(wanted: bool) -> None:
     if wanted:
         typer.echo(f"profiletool {__version__}")
@@ -93,7 +74,7 @@ def _config(context: typer.Context, path: Path | None) -> Path | None:
     """Take the options of a TOML file as defaults; the command line wins."""
     if path is None:
         return None
-    with _exit_codes(debug=False):
+    with exit_codes(debug=False):
         context.default_map = {**(context.default_map or {}), **_read_config(context, path)}
     return path
 
@@ -176,9 +157,9 @@ def design(
     ] = 1.0,
     verify: Annotated[
         bool,
-        typer.Option(help="Verify by FE. This version has no FE yet: designs are NOT VERIFIED."),
+        typer.Option(help="Run finite elements of the whole actuator: some seconds."),
     ] = True,
-    refine: Annotated[bool, typer.Option(help="Correct the design by FE. Not yet either.")] = True,
+    refine: Annotated[bool, typer.Option(help="Accepted, and does nothing yet.")] = True,
     config: Annotated[
         Path | None,
         typer.Option(callback=_config, is_eager=True, help="TOML file with any of these options."),
@@ -188,12 +169,12 @@ def design(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier design.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print design.json on stdout.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="No progress on stderr.")] = False,
+    quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
     """Design an actuator that mirrors the side of an object, and its cut template."""
-    del method, verify, refine, config  # parsed for the contract; see their help
-    with _exit_codes(debug):
+    del method, refine, config  # parsed for the contract; see their help
+    with exit_codes(debug):
         from profiletool import artifacts, output, pipeline
         from profiletool.image.scale import ScaleRequest
         from profiletool.records import Material
@@ -219,9 +200,11 @@ def design(
                 max_length_mm=max_length,
             ),
             formula=formula,
+            verify=verify,
         )
-        say = _silence if quiet else _say
-        result = pipeline.run(request, say)
+        say = speaker(quiet)
+        with progress_bar("finite elements", quiet) as progress:
+            result = pipeline.run(request, say, progress)
         files = artifacts.files_of(result)
         output.write_folder(folder, files, force)
         text = files["design.json"].decode() if as_json else joint_table(result.design)
@@ -234,6 +217,19 @@ def design(
                 f"no design within the limits ({result.reasons[0]}); "
                 f"the best attempt is in {folder}, marked infeasible"
             )
+        if result.check is not None and result.check.failure is not None:
+            raise NotVerified(
+                f"finite elements: {result.check.failure}; the design is in {folder}, marked NOT "
+                "VERIFIED; try a lower --max-pressure"
+            )
+
+
+for _command, _example in (
+    (cli_fe.verify, "profiletool verify bulb_design/design.json"),
+    (cli_fe.joint, "profiletool joint --openF 10 --alpha 84 --pressure 2.0"),
+    (cli_fe.finger, "profiletool finger --out finger"),
+):
+    app.command(epilog=f"Example:  {_example}")(_command)
 
 
 @app.command(epilog="Example:  profiletool table --openF 6,8,10 --csv")
@@ -247,14 +243,14 @@ def table(
     debug: Debug = False,
 ) -> None:
     """Print the theta table of a formula (the paper's Table 4)."""
-    with _exit_codes(debug):
+    with exit_codes(debug):
         from formula.errors import OutOfRange
         from formula.table import make_table
         from profiletool.pipeline import read_formula
         from profiletool.report.text import theta_csv, theta_json, theta_text
 
         try:
-            cuts = None if openF is None else _numbers("--openF", openF)
+            cuts = None if openF is None else numbers("--openF", openF)
             made = make_table(read_formula(formula), openF_mm=cuts)
         except OutOfRange as error:
             raise UsageError(str(error)) from error
@@ -273,14 +269,14 @@ def assign(
     debug: Debug = False,
 ) -> None:
     """Choose pressure and alpha for given joints by the paper's table procedure."""
-    with _exit_codes(debug):
+    with exit_codes(debug):
         from formula.errors import OutOfRange
         from formula.table import assign as look_up
         from formula.table import make_table
         from profiletool.pipeline import read_formula
         from profiletool.report.text import assignment_json, assignment_text
 
-        cuts, angles = _numbers("--openF", openF), _numbers("--theta", theta)
+        cuts, angles = numbers("--openF", openF), numbers("--theta", theta)
         if len(cuts) != len(angles):
             raise UsageError(
                 f"--openF has {len(cuts)} numbers, --theta {len(angles)}: give one each per joint"
@@ -302,11 +298,11 @@ def template(
         Path | None, typer.Option(help="Output folder (default: name + _template).")
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier template.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="No progress on stderr.")] = False,
+    quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
     """Draw the cut template of a design anew."""
-    with _exit_codes(debug):
+    with exit_codes(debug):
         from profiletool import artifacts, output
         from profiletool.designfile import load_design, to_json
 
@@ -315,25 +311,7 @@ def template(
         made = load_design(file)
         files = {**artifacts.template_files(made), "design.json": to_json(made).encode()}
         output.write_folder(folder, files, force)
-        (_silence if quiet else _say)(f"written: {folder}")
-
-
-def _say(line: str) -> None:
-    typer.echo(line, err=True)
-
-
-def _silence(line: str) -> None:
-    del line
-
-
-def _numbers(option: str, text: str) -> list[float]:
-    try:
-        values = [float(part) for part in text.split(",")]
-    except ValueError as error:
-        raise UsageError(f"{option} takes numbers with commas between, not {text!r}") from error
-    if not all(abs(value) < 1e6 for value in values):
-        raise UsageError(f"{option} takes finite numbers, not {text!r}")
-    return values
+        speaker(quiet)(f"written: {folder}")
 
 
 if __name__ == "__main__":

@@ -41,3 +41,9 @@ class Infeasible(ProfiletoolError):
     """No design within the physical limits."""
 
     exit_code = 6
+
+
+class NotVerified(ProfiletoolError):
+    """The finite-element run did not reach the pressure it was asked for."""
+
+    exit_code = 7

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from profiletool.errors import OutputError, UsageError
 
-_MARK = "design.json"  # what makes a folder ours to replace
+_MARKS = ("design.json", "fe.json")  # either makes a folder ours to replace
 
 
 def check_free(folder: Path, force: bool) -> None:
@@ -28,10 +28,11 @@ def check_free(folder: Path, force: bool) -> None:
         raise _cannot_write(folder, error) from error
     if not folder.is_dir() or folder.is_symlink():
         raise UsageError(f"{folder} exists and is no folder; choose another with --out")
-    ours = (folder / _MARK).is_file() or not any(folder.iterdir())
+    ours = any((folder / mark).is_file() for mark in _MARKS) or not any(folder.iterdir())
     if force and not ours:
         raise UsageError(
-            f"{folder} holds no {_MARK}, so --force will not replace it; choose another with --out"
+            f"{folder} holds no {' or '.join(_MARKS)}, so --force will not replace it; "
+            "choose another with --out"
         )
     if not force:
         raise UsageError(f"{folder} exists; replace it with --force or choose another with --out")

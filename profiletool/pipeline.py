@@ -17,8 +17,8 @@ from profiletool.image.marker import find_markers
 from profiletool.image.scale import ScaleRequest, scale_of
 from profiletool.image.silhouette import find_silhouette
 from profiletool.joints.assign import Layout, joint_rules, lay_out, theta_table
-from profiletool.joints.kinematics import Shape, deform, misfit
-from profiletool.joints.limits import named, shape_warnings, shortfalls, warnings
+from profiletool.joints.kinematics import deform, misfit
+from profiletool.joints.limits import disagreement, named, shape_warnings, shortfalls, warnings
 from profiletool.joints.sectors import Sector, discretise
 from profiletool.profile.side import top_middle
 from profiletool.profile.target import Reach, profile_of_line, profile_of_object
@@ -32,12 +32,14 @@ from profiletool.records import (
     Picture,
     Profile,
     Scale,
+    Shape,
     Side,
     Silhouette,
     Source,
     Tube,
 )
-from profiletool.template.unroll import SeamChoice, best_seam, off_mesh
+from profiletool.template.unroll import best_seam, off_mesh
+from profiletool.verify import Check, Progress, check
 
 _WRONG_SCALE = {"height": {"top", "bottom"}, "width": {"left", "right"}}
 
@@ -56,6 +58,7 @@ class Request:
     joints: int | None = None
     material: Material = field(default_factory=Material)
     formula: Path | None = None
+    verify: bool = False
 
 
 @dataclass(frozen=True)
@@ -74,7 +77,7 @@ class Result:
     """A design with what it was made from.
 
     ``reasons`` say why it is infeasible; none where it is feasible. ``shape`` is the tube as the
-    formula bends it.
+    formula bends it. ``check`` is its finite-element run; None where none was asked for.
     """
 
     design: Design
@@ -83,9 +86,10 @@ class Result:
     sectors: tuple[Sector, ...]
     layout: Layout
     shape: Shape
+    check: Check | None
 
 
-def run(request: Request, say: Callable[[str], None]) -> Result:
+def run(request: Request, say: Callable[[str], None], progress: Progress | None = None) -> Result:
     """Design an actuator for a picture or a drawn profile.
 
     Parameters
@@ -93,6 +97,8 @@ def run(request: Request, say: Callable[[str], None]) -> Result:
     request : Request
     say : callable
         Takes one line of progress at a time.
+    progress : callable, optional
+        Takes the share of the finite-element run that is done, 0 to 1.
 
     Raises
     ------
@@ -126,8 +132,22 @@ def run(request: Request, say: Callable[[str], None]) -> Result:
 
     reasons = shortfalls(sectors, layout, rules, material, formula, request.joints, place)
     shape = deform(layout.bends(), layout.length_mm, material.radius_mm, layout.pose, profile.sign)
-    design = _design(request, subject, formula, layout, shape, sectors, reasons)
-    return Result(design, reasons, subject, sectors, layout, shape)
+    design = _design(request, subject, formula, layout, shape, reasons)
+    checked = _verified(design, profile, say, progress) if request.verify else None
+    if checked is not None:
+        design = checked.design
+    known = (checked.shape if checked is not None else None) or shape
+    fit = design.fit.fe or design.fit.formula
+    notes = [*reasons, *_drawing_notes(request, subject)]
+    notes += warnings(
+        layout, profile, fit, request.tolerance_mm, material, formula, design.verified
+    )
+    notes += disagreement(design.joints, design.pressure_bar)
+    notes += shape_warnings(sectors, known, profile, request.tolerance_mm, request.joints)
+    notes += _gauze_notes(layout, design.gauze)
+    notes += _fe_notes(checked)
+    design = replace(design, warnings=tuple(notes))
+    return Result(design, reasons, subject, sectors, layout, shape, checked)
 
 
 def read_formula(path: Path | None) -> Formula:
@@ -229,18 +249,13 @@ def _design(
     formula: Formula,
     layout: Layout,
     shape: Shape,
-    sectors: tuple[Sector, ...],
     reasons: tuple[str, ...],
 ) -> Design:
+    """Gather the design; what the user should know of it comes later."""
     material, profile = request.material, subject.profile
     fit = misfit(shape, profile)
-    seam = best_seam(layout.joints)
-    gauze = Gauze(material.pitch_mm, material.thread_mm, material.turns, seam.seam_deg)
-    notes = [*reasons, *_drawing_notes(request, subject)]
-    notes += warnings(layout, profile, fit, request.tolerance_mm, material, formula)
-    notes += shape_warnings(sectors, shape, profile, request.tolerance_mm, request.joints)
-    notes += _gauze_notes(layout, gauze, seam)
-    notes.append("NOT VERIFIED: no finite-element run has checked this design")
+    seam = best_seam(layout.joints).seam_deg
+    gauze = Gauze(material.pitch_mm, material.thread_mm, material.turns, seam)
     return Design(
         source=Source(
             file=request.file.name,
@@ -261,8 +276,29 @@ def _design(
         fit=Fit(formula=fit, fe=None),
         feasible=not reasons,
         verified=False,
-        warnings=tuple(notes),
+        warnings=(),
     )
+
+
+def _verified(
+    design: Design, profile: Profile, say: Callable[[str], None], progress: Progress | None
+) -> Check:
+    def share(reached_bar: float) -> None:
+        if progress is not None:
+            progress(reached_bar / design.pressure_bar)
+
+    say(f"finite elements: the whole actuator to {design.pressure_bar:.2f} bar")
+    return check(design, profile, share)
+
+
+def _fe_notes(checked: Check | None) -> Iterator[str]:
+    """Say what came of the finite-element run."""
+    if checked is None:
+        yield "NOT VERIFIED: no finite-element run has checked this design"
+    elif checked.failure is not None:
+        yield f"NOT VERIFIED: finite elements: {checked.failure}"
+    elif checked.run is not None and checked.run.verification.last.touches:
+        yield "by FE the bent tube touches itself; the model lets it pass through"
 
 
 def _drawing_notes(request: Request, subject: Subject) -> Iterator[str]:
@@ -278,8 +314,9 @@ def _drawing_notes(request: Request, subject: Subject) -> Iterator[str]:
         yield f"the object runs out of the frame ({edges}); the profile ends there"
 
 
-def _gauze_notes(layout: Layout, gauze: Gauze, seam: SeamChoice) -> Iterator[str]:
+def _gauze_notes(layout: Layout, gauze: Gauze) -> Iterator[str]:
     """Say what the user should know when cutting the gauze."""
+    seam = best_seam(layout.joints)
     for numbers, what in (
         (seam.crossed, "the weld line crosses the cuts of {}: weld again there"),
         (

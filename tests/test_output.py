@@ -37,7 +37,7 @@ def test_force_replaces_the_whole_folder(tmp_path: Path) -> None:
 def test_force_does_not_replace_what_is_not_ours(tmp_path: Path) -> None:
     (tmp_path / "thesis").mkdir()
     (tmp_path / "thesis" / "chapter1.tex").write_text("years of work")
-    with pytest.raises(UsageError, match=r"holds no design\.json"):
+    with pytest.raises(UsageError, match=r"holds no design\.json or fe\.json"):
         write_folder(tmp_path / "thesis", FILES, force=True)
     assert (tmp_path / "thesis" / "chapter1.tex").read_text() == "years of work"
 

@@ -15,10 +15,10 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 
-from profiletool.records import FloatArray, Misfit, Pose, Profile
+from profiletool.records import FloatArray, Misfit, Pose, Profile, Shape
 
 PIVOT_SHARE = 0.79  # of the tube's radius, from its axis toward the uncut sector
-_STEP_MM = 0.25
+STEP_MM = 0.25  # spacing of a shape's points on the straight tube
 
 
 @dataclass(frozen=True)
@@ -32,24 +32,6 @@ class Bend:
     centre_mm: float
     openF_mm: float
     turn_rad: float
-
-
-@dataclass(frozen=True)
-class Shape:
-    """A deformed (or straight) actuator in the object frame.
-
-    Attributes
-    ----------
-    along : (N,) mm
-        Position on the straight tube, from the clamped end.
-    facing, axis, far : (N, 2) mm
-        The object-facing surface line, the axis, the surface line on the other side.
-    """
-
-    along: FloatArray
-    facing: FloatArray
-    axis: FloatArray
-    far: FloatArray
 
 
 def facing_stretch(turn_rad: ArrayLike, radius_mm: float) -> FloatArray:
@@ -96,7 +78,7 @@ def deform(
 
 def _sample(edges: FloatArray, rates: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Sample (along, turn) at steps that end on the edges, and the stretch within each step."""
-    counts = np.maximum(np.ceil(np.diff(edges) / _STEP_MM).astype(int), 1)
+    counts = np.maximum(np.ceil(np.diff(edges) / STEP_MM).astype(int), 1)
     along = np.concatenate(
         [[edges[0]]]
         + [np.linspace(a, b, n + 1)[1:] for a, b, n in zip(edges, edges[1:], counts, strict=False)]
@@ -113,9 +95,14 @@ def misfit(shape: Shape, profile: Profile) -> Misfit:
     with its distance to the profile, but for what lies beyond the profile's ends; both ways weigh
     the same.
     """
-    line, target = shapely.LineString(shape.facing), _target_line(profile)
+    return misfit_to(shape, profile.points)
+
+
+def misfit_to(shape: Shape, points: FloatArray) -> Misfit:
+    """Give the same for a profile of which only the points (N, 2) are known, 0.1 mm apart."""
+    line, target = shapely.LineString(shape.facing), _target_line(points)
     shapely.prepare([line, target])
-    to_line = shapely.distance(shapely.points(profile.points), line)
+    to_line = shapely.distance(shapely.points(points), line)
     _, inside = _beside(shape, target)
     to_target = shapely.distance(shapely.points(shape.facing[inside]), target)
     ways = [way for way in (to_line, to_target) if len(way)]
@@ -125,7 +112,7 @@ def misfit(shape: Shape, profile: Profile) -> Misfit:
 
 def depth_inside(shape: Shape, profile: Profile) -> float:
     """How deep the object-facing line lies inside the object at most, mm; 0 where it does not."""
-    target = _target_line(profile)
+    target = _target_line(profile.points)
     along, inside = _beside(shape, target)
     at = np.searchsorted(profile.s, along * (profile.length_mm / target.length))
     at = np.clip(at, 0, len(profile.s) - 1)
@@ -140,10 +127,10 @@ def meets_itself(shape: Shape) -> bool:
     return not shapely.LinearRing(np.concatenate([shape.facing, shape.far[::-1]])).is_simple
 
 
-def _target_line(profile: Profile) -> shapely.LineString:
+def _target_line(points: FloatArray) -> shapely.LineString:
     """Thin a profile for distances: at half a millimetre an arc of 10 mm is right to 0.003 mm."""
-    every = np.append(np.arange(0, len(profile.s) - 1, 5), len(profile.s) - 1)
-    return shapely.LineString(profile.points[every])
+    every = np.append(np.arange(0, len(points) - 1, 5), len(points) - 1)
+    return shapely.LineString(points[every])
 
 
 def _beside(shape: Shape, target: shapely.LineString) -> tuple[FloatArray, NDArray[np.bool_]]:

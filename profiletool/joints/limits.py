@@ -8,10 +8,10 @@ import numpy as np
 
 from formula.theta import Formula
 from profiletool.joints.assign import NEAR_DEG, Layout
-from profiletool.joints.kinematics import Shape, depth_inside, meets_itself
+from profiletool.joints.kinematics import depth_inside, meets_itself
 from profiletool.joints.pieces import Rules
 from profiletool.joints.sectors import Sector
-from profiletool.records import Material, Misfit, Profile
+from profiletool.records import Joint, Material, Misfit, Profile, Shape
 
 _FORMULA_LOW_ABOVE_BAR = 1.2
 _SLACK = 0.05  # mm or deg that nobody can see
@@ -94,15 +94,19 @@ def warnings(
     tolerance_mm: float,
     material: Material,
     formula: Formula,
+    verified: bool,
 ) -> tuple[str, ...]:
-    """Say what the user should know of a design that can be made."""
+    """Say what the user should know of a design that can be made.
+
+    ``fit`` is that of FE where it has ``verified`` the design, else the formula's.
+    """
     found = []
     if material.max_pressure_bar > formula.pressure_range_bar[1]:
         found.append(
             f'formula "{formula.name}" ends at {formula.pressure_range_bar[1]:g} bar: '
             "no higher pressure was considered"
         )
-    if layout.pressure_bar > _FORMULA_LOW_ABOVE_BAR:
+    if layout.pressure_bar > _FORMULA_LOW_ABOVE_BAR and not verified:
         found.append(
             f"formula (9) reads low above {_FORMULA_LOW_ABOVE_BAR:g} bar: expect the joints to "
             f"bend more than it says at {layout.pressure_bar:.2f} bar"
@@ -118,12 +122,30 @@ def warnings(
     if share >= 0.5:
         found.append(f"{share:.0f} % of the profile is bridged: grooves too tight to enter")
     if fit.max_mm > tolerance_mm:
+        by = "by FE the bent shape lies" if verified else "the bent shape is predicted"
         found.append(
-            f"the bent shape is predicted up to {fit.max_mm:.1f} mm off the profile "
+            f"{by} up to {fit.max_mm:.1f} mm off the profile "
             f"(RMS {fit.rms_mm:.1f} mm): the paper's method rounds angles up, takes lengths off "
             "the drawing and corrects neither"
         )
     return tuple(found)
+
+
+def disagreement(joints: Sequence[Joint], pressure_bar: float) -> Iterator[str]:
+    """Say where FE and the formula disagree, by more than the table's own coarseness."""
+    for more, word in ((True, "more"), (False, "less")):
+        off = {
+            j.number: (1.0 if more else -1.0) * (j.theta_fe_deg - j.theta_formula_deg)
+            for j in joints
+            if j.theta_fe_deg is not None
+        }
+        apart = {number: by for number, by in off.items() if by > NEAR_DEG}
+        if apart:
+            yield (
+                f"by FE {named(apart)} {'bends' if len(apart) == 1 else 'bend'} up to "
+                f"{max(apart.values()):.1f} deg {word} at {pressure_bar:.2f} bar than the formula "
+                "says: believe the FE"
+            )
 
 
 def shape_warnings(

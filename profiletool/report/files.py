@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from profiletool.joints.kinematics import Shape
 from profiletool.profile.curve import arc_length
-from profiletool.records import FloatArray, Profile
+from profiletool.records import FloatArray
 
 
 def mask_png(mask: NDArray[np.bool_]) -> bytes:
@@ -20,12 +20,25 @@ def mask_png(mask: NDArray[np.bool_]) -> bytes:
     return buffer.getvalue()
 
 
-def shape_csv(profile: Profile, shape: Shape) -> bytes:
-    """Tabulate the target profile and the predicted object-facing line, mm, object frame."""
-    lines = ["curve,s_mm,x_mm,y_mm"]
-    for name, points in (("target", profile.points), ("formula", shape.facing)):
-        lines += _rows(name, points)
-    return ("\n".join(lines) + "\n").encode()
+def shape_csv(lines: Mapping[str, FloatArray]) -> bytes:
+    """Tabulate named lines (N, 2) in mm, object frame, with the arc length along each."""
+    rows = ["curve,s_mm,x_mm,y_mm"]
+    for name, points in lines.items():
+        rows += _rows(name, points)
+    return ("\n".join(rows) + "\n").encode()
+
+
+def read_shape_csv(text: str, name: str) -> FloatArray:
+    """Read one line of a shape.csv back: (N, 2) mm; empty where there is none of that name.
+
+    Raises
+    ------
+    ValueError
+        When the text is no such table.
+    """
+    rows = [row.split(",") for row in text.splitlines()]
+    points = [[float(x), float(y)] for curve, _, x, y in rows if curve == name]
+    return np.array(points, dtype=float).reshape(-1, 2)
 
 
 def _rows(name: str, points: FloatArray) -> list[str]:

@@ -15,16 +15,11 @@ from matplotlib.patches import Polygon
 from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
-from profiletool.joints.kinematics import Bend, Shape
+from profiletool.joints.kinematics import Bend
 from profiletool.joints.sectors import Sector
 from profiletool.profile.offset import offset_curve, offset_points
-from profiletool.records import Design, FloatArray, Picture, Profile
-
-# Okabe and Ito's palette: told apart by colour-blind readers too.
-INK, BLUE, SKY, GREEN, RED, YELLOW = (
-    "#1b1b1b", "#0072b2", "#56b4e9", "#009e73", "#d55e00", "#f0e442",
-)  # fmt: skip
-GREY = "#6f6f6f"
+from profiletool.records import Design, FloatArray, Joint, Picture, Profile, Shape
+from profiletool.report.palette import BLUE, GREEN, GREY, INK, PURPLE, RED, SKY, YELLOW
 
 _DPI = 130
 _LONGEST_PX = 1000  # the picture is shown no finer than the figure resolves
@@ -46,7 +41,11 @@ class Backdrop:
 
 @dataclass(frozen=True)
 class Scene:
-    """All that the overlay shows; ``backdrop`` is None for a drawn profile."""
+    """All that the overlay shows.
+
+    ``backdrop`` is None for a drawn profile, ``fe`` (the tube by finite elements) where it was
+    not verified; ``bent`` is the tube by the formula.
+    """
 
     backdrop: Backdrop | None
     profile: Profile
@@ -55,6 +54,7 @@ class Scene:
     bends: Sequence[Bend]
     bent: Shape
     straight: Shape
+    fe: Shape | None = None
 
 
 def backdrop_of(picture: Picture, mm_per_px: float, origin_px: tuple[float, float]) -> Backdrop:
@@ -106,6 +106,8 @@ def _limits(scene: Scene) -> tuple[float, float, float, float]:
         scene.bent.facing, scene.bent.far, scene.straight.facing, scene.straight.far,
         scene.profile.points,
     ]  # fmt: skip
+    if scene.fe is not None:
+        parts += [scene.fe.facing, scene.fe.far]
     if scene.profile.outline is not None:
         parts.append(scene.profile.outline)
     points = np.concatenate(parts)
@@ -154,23 +156,36 @@ def _draw_sectors(axes: Any, scene: Scene) -> None:
 
 
 def _draw_tube(axes: Any, scene: Scene) -> None:
-    straight, bent = scene.straight, scene.bent
-    ring = np.concatenate([straight.facing, straight.far[::-1], straight.facing[:1]])
-    axes.plot(*ring.T, color=GREY, lw=1.0, ls=(0, (2, 2)), zorder=4, label="tube at rest")
-    body = np.concatenate([bent.facing, bent.far[::-1], bent.facing[:1]])
-    _fill(axes, body, color=GREEN, alpha=0.16, lw=0, zorder=4)
+    """Draw the tube at rest and bent: filled as FE bends it, else as the formula does."""
+    straight, pressure = scene.straight, scene.design.pressure_bar
     axes.plot(
-        *body.T, color=GREEN, lw=1.8, zorder=5, path_effects=_halo(3.0),
-        label=f"tube at {scene.design.pressure_bar:.2f} bar (formula)",
+        *_ring(straight).T, color=GREY, lw=1.0, ls=(0, (2, 2)), zorder=4, label="tube at rest"
+    )
+    if scene.fe is None:
+        _draw_bent(axes, scene, scene.bent, GREEN, f"tube at {pressure:.2f} bar (formula)")
+        return
+    axes.plot(
+        *_ring(scene.bent).T, color=GREEN, lw=1.3, ls=(0, (6, 2)), zorder=5,
+        path_effects=_halo(2.3), label=f"tube at {pressure:.2f} bar (formula)",
     )  # fmt: skip
+    _draw_bent(axes, scene, scene.fe, PURPLE, f"tube at {pressure:.2f} bar (finite elements)")
+
+
+def _draw_bent(axes: Any, scene: Scene, bent: Shape, colour: str, label: str) -> None:
+    _fill(axes, _ring(bent), color=colour, alpha=0.16, lw=0, zorder=4)
+    axes.plot(*_ring(bent).T, color=colour, lw=1.8, zorder=5, path_effects=_halo(3.0), label=label)
     for bend in scene.bends:
         within = np.abs(bent.along - bend.centre_mm) <= 0.5 * bend.openF_mm + 1e-9
         window = np.concatenate([bent.facing[within], bent.far[within][::-1]])
-        _fill(axes, window, facecolor=GREEN, alpha=0.30, lw=0, zorder=4)
+        _fill(axes, window, facecolor=colour, alpha=0.30, lw=0, zorder=4)
     root = scene.design.tube.root_mm - 0.5 * scene.design.joints[0].openF_mm
     clamped = bent.along <= root + 1e-9
     clamp = np.concatenate([bent.facing[clamped], bent.far[clamped][::-1]])
     _fill(axes, clamp, facecolor="none", edgecolor=INK, hatch="////", lw=0.0, alpha=0.45, zorder=5)
+
+
+def _ring(shape: Shape) -> FloatArray:
+    return np.concatenate([shape.facing, shape.far[::-1], shape.facing[:1]])
 
 
 def _draw_profile(axes: Any, scene: Scene) -> None:
@@ -206,9 +221,14 @@ def _draw_joints(axes: Any, scene: Scene) -> None:
         )  # fmt: skip
         axes.text(
             *_free_place([curve[at] for curve in angles], taken),
-            f"{joint.sense * joint.theta_formula_deg:.0f}°", color=INK, fontsize=10.5,
+            f"{joint.sense * _theta(joint):.0f}°", color=INK, fontsize=10.5,
             weight="bold", ha="center", va="center", zorder=9, path_effects=_halo(3.0),
         )  # fmt: skip
+
+
+def _theta(joint: Joint) -> float:
+    """Give the angle that is the more believable one."""
+    return joint.theta_formula_deg if joint.theta_fe_deg is None else joint.theta_fe_deg
 
 
 def _free_place(places: Sequence[FloatArray], taken: list[FloatArray]) -> FloatArray:
@@ -260,19 +280,25 @@ def _status(design: Design) -> list[tuple[str, str]]:
 def _facts(design: Design) -> list[str]:
     tube, source, fit = design.tube, design.source, design.fit.formula
     scale = "" if source.mm_per_px is None else f"  ({source.mm_per_px:.4g} mm per pixel)"
+    off = [("predicted off the profile", fit)]
+    if design.fit.fe is not None:
+        off = [("formula off the profile", fit), ("FE off the profile", design.fit.fe)]
     return [
         f"operating pressure {design.pressure_bar:.2f} bar",
         f"tube {tube.outer_diameter_mm:g} x {tube.wall_mm:g} mm, {tube.length_mm:.1f} mm long, "
         f"root {tube.root_mm:.1f} mm",
         f"{source.side} side, {source.profile_length_mm:.1f} mm to follow",
         f"scale from {source.scale_source}{scale}",
-        f"predicted off the profile: {fit.rms_mm:.1f} mm RMS, {fit.max_mm:.1f} mm at most",
+        *(f"{by}: {m.rms_mm:.1f} mm RMS, {m.max_mm:.1f} mm at most" for by, m in off),
     ]
 
 
 def _draw_table(axes: Any, design: Design, y: float) -> float:
-    columns = (0.06, 0.22, 0.40, 0.58, 0.75, 0.92)
-    heads = ("joint", "F\nmm", "openF\nmm", "α closed\n°", "α center\n°", "θ\n°")
+    columns: tuple[float, ...] = (0.06, 0.22, 0.40, 0.58, 0.75, 0.92)
+    heads: tuple[str, ...] = ("joint", "F\nmm", "openF\nmm", "α closed\n°", "α center\n°", "θ\n°")
+    if design.verified:
+        columns = (0.06, 0.18, 0.32, 0.47, 0.62, 0.79, 0.93)
+        heads = (*heads[:5], "θ formula\n°", "θ FE\n°")
     for x, head in zip(columns, heads, strict=True):
         axes.text(x, y, head, fontsize=9, color=GREY, ha="center", va="center", linespacing=1.3)
     y -= 0.027
@@ -284,6 +310,7 @@ def _draw_table(axes: Any, design: Design, y: float) -> float:
             f"{joint.number}", f"{joint.F_mm:.1f}", f"{joint.openF_mm:g}",
             f"{joint.alpha_closed_deg:g}", f"{joint.alpha_center_deg:g}",
             f"{joint.theta_formula_deg:.1f}",
+            *(() if joint.theta_fe_deg is None else (f"{joint.theta_fe_deg:.1f}",)),
         )  # fmt: skip
         for x, cell in zip(columns, cells, strict=True):
             axes.text(x, y, cell, fontsize=10, color=INK, ha="center", va="center")

@@ -6,26 +6,35 @@ import json
 from collections.abc import Iterator, Sequence
 
 from formula.table import Assignment, Table
-from profiletool.records import Design
+from profiletool.records import Design, Misfit
 
 _COLUMNS = ("pressure_bar", "openF_mm", "alpha_closed_deg", "theta_deg")
 
 
 def joint_table(design: Design) -> str:
     """Lay out the joints of a design as the paper's Table 5."""
+    fe = design.verified
     lines = [
         f"{design.source.file}: {_counted(len(design.joints))} at {design.pressure_bar:.2f} bar, "
         f"tube {design.tube.length_mm:.1f} mm long, root {design.tube.root_mm:.1f} mm",
-        "joint    F mm  openF mm  alpha_closed deg  alpha_center deg  theta deg  formula deg",
+        "joint    F mm  openF mm  alpha_closed deg  alpha_center deg  theta deg  formula deg"
+        + ("  FE deg" if fe else ""),
     ]
     lines += [
         f"{j.number:5d}  {j.F_mm:6.1f}  {j.openF_mm:8g}  {j.alpha_closed_deg:16g}  "
         f"{j.alpha_center_deg:16g}  {j.theta_target_deg:9.1f}  {j.theta_formula_deg:11.1f}"
+        + ("" if j.theta_fe_deg is None or not fe else f"  {j.theta_fe_deg:6.1f}")
         for j in design.joints
     ]
-    fit = design.fit.formula
-    lines.append(f"predicted off the profile: {fit.rms_mm:.1f} mm RMS, {fit.max_mm:.1f} mm at most")
+    lines.append(f"predicted off the profile: {off_text(design.fit.formula)}")
+    if design.fit.fe is not None:
+        lines.append(f"by FE off the profile:     {off_text(design.fit.fe)}")
     return "\n".join(lines) + "\n"
+
+
+def off_text(misfit: Misfit) -> str:
+    """Say how far a shape lies off its target."""
+    return f"{misfit.rms_mm:.1f} mm RMS, {misfit.max_mm:.1f} mm at most"
 
 
 def _counted(joints: int) -> str:

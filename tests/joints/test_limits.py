@@ -73,7 +73,7 @@ def noted(layout: Layout = LAYOUT, fit: Misfit | None = None, **options: object)
     profile = options.get("profile", ROUND)
     material = options.get("material", MATERIAL)
     fit = Misfit(0.2, 0.5) if fit is None else fit
-    return " | ".join(warnings(layout, profile, fit, 1.0, material, PAPER))
+    return " | ".join(warnings(layout, profile, fit, 1.0, material, PAPER, False))
 
 
 def test_warnings_come_with_their_cause_only() -> None:

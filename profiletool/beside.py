@@ -1,0 +1,65 @@
+"""The target profile of a design.json, where what lies beside it still tells."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+
+from profiletool.errors import ProfiletoolError
+from profiletool.profile.curve import arc_length
+from profiletool.profile.target import Reach, profile_of_line, profile_of_object
+from profiletool.profile.vector import SUFFIXES, load_vector
+from profiletool.records import Design, FloatArray
+from profiletool.report.files import read_shape_csv
+
+_MOST_BYTES = 50_000_000
+_SAME_MM = 0.02  # lengths nearer than this are of the same profile
+
+
+@dataclass(frozen=True)
+class Target:
+    """A target profile (N, 2) mm, object frame, and the name of the file that it comes from."""
+
+    points: FloatArray
+    file: str
+
+
+def target_of(design: Design, file: Path) -> Target | None:
+    """Find the target of a design read from ``file``: in its shape.csv, else in its drawing.
+
+    A drawing counts when it is the very file that the design was made from. In both cases the
+    profile must be as long as the design says, for neither knows of options such as --from.
+    """
+    for name, points in (
+        ("shape.csv", _tabulated(file.with_name("shape.csv"))),
+        (design.source.file, _drawn(design, file.parent / design.source.file)),
+    ):
+        if points is None or len(points) < 2:
+            continue
+        if abs(float(arc_length(points)[-1]) - design.source.profile_length_mm) < _SAME_MM:
+            return Target(points, name)
+    return None
+
+
+def _tabulated(path: Path) -> FloatArray | None:
+    try:
+        return read_shape_csv(path.read_text(encoding="utf-8"), "target")
+    except (OSError, ValueError):
+        return None
+
+
+def _drawn(design: Design, path: Path) -> FloatArray | None:
+    if path.suffix.lower() not in SUFFIXES:
+        return None
+    try:
+        if path.stat().st_size > _MOST_BYTES:
+            return None
+        if hashlib.sha256(path.read_bytes()).hexdigest() != design.source.sha256:
+            return None
+        drawn = load_vector(path)
+        make = profile_of_object if drawn.closed else profile_of_line
+        reach = Reach(design.source.side, 0.5 * design.tube.outer_diameter_mm)
+        return make(drawn.points, reach).points
+    except (OSError, ProfiletoolError):
+        return None

@@ -1,0 +1,95 @@
+"""What the commands share: options, one-line errors with their exit codes, words on stderr."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from profiletool.errors import ProfiletoolError, UsageError
+
+Debug = Annotated[bool, typer.Option("--debug", help="Show the full traceback of an error.")]
+Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
+Quiet = Annotated[bool, typer.Option("--quiet", help="No progress on stderr.")]
+FormulaFile = Annotated[
+    Path | None, typer.Option("--formula", help="A formula file (default: the paper's formula).")
+]
+
+
+@contextmanager
+def exit_codes(debug: bool) -> Iterator[None]:
+    """Turn our errors into one line on stderr and their exit code."""
+    try:
+        yield
+    except ProfiletoolError as error:
+        if debug:
+            traceback.print_exc()
+        typer.echo(f"error: {error}", err=True)
+        raise typer.Exit(error.exit_code) from error
+    except (typer.Exit, typer.Abort):
+        raise
+    except Exception as error:  # the last resort: a fault of ours, never a traceback unasked
+        if debug:
+            traceback.print_exc()
+        what = " ".join(f"{type(error).__name__}: {error}".split())
+        typer.echo(f"error: a fault in profiletool ({what}); run again with --debug", err=True)
+        raise typer.Exit(1) from error
+
+
+def speaker(quiet: bool) -> Callable[[str], None]:
+    """Give what puts a line on stderr, or swallows it."""
+    return _silence if quiet else _say
+
+
+def _say(line: str) -> None:
+    typer.echo(line, err=True)
+
+
+def _silence(line: str) -> None:
+    del line
+
+
+@contextmanager
+def progress_bar(what: str, quiet: bool) -> Iterator[Callable[[float], None] | None]:
+    """Show a bar on a terminal from the first share (0 to 1) that it is told; else nothing."""
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console  # slow to load, and only a terminal needs it
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+
+    bar = Progress(
+        TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn(),
+        console=Console(stderr=True), transient=True,
+    )  # fmt: skip
+    task = bar.add_task(what, total=1.0)
+
+    def show(share: float) -> None:
+        bar.start()
+        bar.update(task, completed=share)
+
+    try:
+        yield show
+    finally:
+        bar.stop()
+
+
+def numbers(option: str, text: str) -> list[float]:
+    """Read numbers with commas between.
+
+    Raises
+    ------
+    UsageError
+    """
+    try:
+        values = [float(part) for part in text.split(",")]
+    except ValueError as error:
+        raise UsageError(f"{option} takes numbers with commas between, not {text!r}") from error
+    if not all(abs(value) < 1e6 for value in values):
+        raise UsageError(f"{option} takes finite numbers, not {text!r}")
+    return values
