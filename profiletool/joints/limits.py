@@ -141,10 +141,10 @@ def disagreement(joints: Sequence[Joint], pressure_bar: float) -> Iterator[str]:
         }
         apart = {number: by for number, by in off.items() if by > NEAR_DEG}
         if apart:
+            verb = "bends" if len(apart) == 1 else "bend up to"
             yield (
-                f"by FE {named(apart)} {'bends' if len(apart) == 1 else 'bend'} up to "
-                f"{max(apart.values()):.1f} deg {word} at {pressure_bar:.2f} bar than the formula "
-                "says: believe the FE"
+                f"by FE {named(apart)} {verb} {max(apart.values()):.1f} deg {word} at "
+                f"{pressure_bar:.2f} bar than the formula says: believe the FE"
             )
 
 

@@ -273,7 +273,11 @@ def _status(design: Design) -> list[tuple[str, str]]:
     lines = []
     if not design.feasible:
         lines.append(("INFEASIBLE: best attempt", RED))
-    lines.append(("verified by FE", GREEN) if design.verified else ("NOT VERIFIED by FE", RED))
+    off = design.fit.fe
+    if not design.verified:
+        lines.append(("NOT VERIFIED by FE", RED))
+    elif off is not None:
+        lines.append((f"verified by FE: {off.rms_mm:.1f} mm RMS off the profile", INK))
     return lines
 
 

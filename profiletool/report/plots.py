@@ -74,6 +74,7 @@ def draw_trajectories(found: Verification, title: str) -> bytes:
             label=f"phalanx {k}",
         )  # fmt: skip
     axes.set_aspect("equal", adjustable="datalim")
+    axes.margins(0.1)
     axes.set_xlabel("x (mm), along the tube at rest")
     axes.set_ylabel("y (mm)")
     steps = "" if len(states) < 3 else f", a mark every {np.diff(found.pressures_bar)[0]:.2g} bar"

@@ -8,7 +8,7 @@ import pytest
 from formula.theta import load_formula
 from profiletool.joints.assign import Layout, joint_rules, theta_table
 from profiletool.joints.kinematics import deform
-from profiletool.joints.limits import named, shape_warnings, shortfalls, warnings
+from profiletool.joints.limits import disagreement, named, shape_warnings, shortfalls, warnings
 from profiletool.joints.sectors import Sector
 from profiletool.profile.target import Reach, profile_of_object
 from profiletool.records import Joint, Material, Misfit, Pose
@@ -102,3 +102,27 @@ def test_what_is_wrong_with_the_shape() -> None:
 def test_joints_by_name() -> None:
     assert named([2]) == "joint 2"
     assert named([2, 3, 5]) == "joints 2, 3 and 5"
+
+
+def test_where_fe_and_the_formula_disagree() -> None:
+    def joints(*angles: float | None) -> list[Joint]:
+        return [
+            replace(JOINT, number=k, theta_fe_deg=angle) for k, angle in enumerate(angles, start=1)
+        ]
+
+    assert list(disagreement(joints(None, 32.5, 28.7), 1.9)) == []
+    (more,) = disagreement(joints(34.6, 30.0, 35.4), 1.9)
+    assert more == (
+        "by FE joints 1 and 3 bend up to 4.8 deg more at 1.90 bar than the formula says: "
+        "believe the FE"
+    )
+    (less,) = disagreement(joints(30.6, 25.6), 1.0)
+    assert "joint 2 bends 5.0 deg less at 1.00 bar" in less
+
+
+def test_what_fe_makes_needless_to_say() -> None:
+    fit = Misfit(2.0, 5.0)
+    told = warnings(LAYOUT, ROUND, fit, 1.0, MATERIAL, PAPER, True)
+    assert not any("reads low" in line for line in told)
+    assert any("by FE the bent shape lies up to 5.0 mm off" in line for line in told)
+    assert any("is predicted up to 5.0 mm off" in line for line in noted(fit=fit).split(" | "))

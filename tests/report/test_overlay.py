@@ -12,6 +12,7 @@ import pytest
 from PIL import Image
 
 from profiletool.artifacts import scene_of
+from profiletool.joints.kinematics import deform, misfit
 from profiletool.pipeline import Request, run
 from profiletool.records import Picture
 from profiletool.report.overlay import Scene, backdrop_of, draw_overlay
@@ -60,6 +61,28 @@ def test_bulb(bulb: Scene) -> None:
 
 def test_drawn_profile(samples: Path) -> None:
     check("overlay_finger_rest.webp", draw_overlay(scene_from(samples / "finger_rest.csv")))
+
+
+def by_fe(scene: Scene) -> Scene:
+    """As if finite elements had bent every joint by a seventh more."""
+    design = scene.design
+    more = [replace(bend, turn_rad=bend.turn_rad * 8.0 / 7.0) for bend in scene.bends]
+    shape = deform(more, design.tube.length_mm, 10.0, design.base_pose, scene.profile.sign)
+    joints = tuple(replace(j, theta_fe_deg=j.theta_formula_deg * 8.0 / 7.0) for j in design.joints)
+    fit = replace(design.fit, fe=misfit(shape, scene.profile))
+    verified = replace(design, joints=joints, fit=fit, verified=True, warnings=())
+    return replace(scene, design=verified, fe=shape)
+
+
+def test_bulb_with_finite_elements(bulb: Scene) -> None:
+    check("overlay_bulb_fe.webp", draw_overlay(by_fe(bulb)))
+
+
+def test_finite_elements_a_millimetre_off_are_seen(bulb: Scene) -> None:
+    scene = by_fe(bulb)
+    assert scene.fe is not None
+    shifted = replace(scene, fe=replace(scene.fe, facing=scene.fe.facing + 1.0))
+    assert worst_block(reduced(draw_overlay(scene)), reduced(draw_overlay(shifted))) > 16.0
 
 
 def test_a_tube_a_millimetre_off_is_seen(bulb: Scene) -> None:

@@ -1,0 +1,116 @@
+"""What is printed of a finite-element run, from numbers made up."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from profiletool.designfile import load_design
+from profiletool.records import Critical, FeState, Misfit, Shape, Verification
+from profiletool.report.fe import (
+    compared_text,
+    fe_json,
+    fe_text,
+    misfit_json,
+    ranges_json,
+    ranges_text,
+    theta_csv,
+)
+from profiletool.report.plots import Mark, draw_theta, draw_trajectories
+
+LINE = np.column_stack([np.linspace(0.0, 90.0, 10), np.zeros(10)])
+SHAPE = Shape(LINE[:, 0], LINE, LINE + np.array([0.0, 10.0]), LINE + np.array([0.0, 20.0]))
+
+
+def state(bar: float, *theta: float, **change: object) -> FeState:
+    at_rest = FeState(
+        bar, theta, SHAPE, LINE[: len(theta) + 1] + bar, 2.0 * bar, 1.5, 0.9, 8.0, 1e-7, 1e-3, False
+    )
+    return replace(at_rest, **change)
+
+
+def run(*states: FeState, critical: Critical | None = None) -> Verification:
+    rest = state(0.0, *(0.0 for _ in states[0].theta_deg))
+    return Verification(rest, states, states[-1].pressure_bar, critical, 10, 99, 250, 31, 1.23456)
+
+
+FINGER = run(
+    state(1.0, 25.0, 28.0, 22.0), state(2.0, 79.0, 90.0, 69.0), state(2.2, 95.0, 108.0, 83.0)
+)
+
+
+def test_json() -> None:
+    found = json.loads(
+        fe_json(run(state(0.5, 10.0, -4.0, touches=True), state(1.0, 20.123456, -9.0)))
+    )
+    assert found["theta_deg"] == [[10.0, 20.1235], [-4.0, -9.0]]
+    assert found["pressure_bar"] == [0.5, 1.0]
+    assert (found["elements"], found["nodes"], found["dofs"]) == (10, 99, 250)
+    assert found["seconds"] == 1.235
+    assert found["air_ml"] == [1.0, 2.0]
+    assert found["touches"] is True  # at any pressure
+    ended = json.loads(
+        fe_json(run(state(0.5, 1.0), critical=Critical("limit point", 0.61)), {"a": 1})
+    )
+    assert ended["converged"] is False
+    assert ended["critical"] == {"kind": "limit point", "pressure_bar": 0.61}
+    assert ended["a"] == 1
+
+
+def test_a_run_that_ends_at_once_prints_too() -> None:
+    nothing = replace(run(state(0.5, 1.0), critical=Critical("limit point", 0.01)), states=())
+    assert json.loads(fe_json(nothing))["theta_deg"] == [[]]
+    assert "at 0.00 bar" in fe_text(nothing)
+    assert theta_csv(nothing) == b"pressure_bar,theta1_deg,air_ml\n"
+    for png in (draw_theta(nothing, "x"), draw_trajectories(nothing, "x")):
+        assert png.startswith(b"\x89PNG")
+
+
+def test_text_and_csv() -> None:
+    found = run(state(0.5, 10.0, -4.04), state(1.0, 20.0, -9.0, touches=True))
+    lines = fe_text(found).splitlines()
+    assert lines[1].split() == ["bar", "theta1", "theta2", "air"]
+    assert lines[2].split() == ["0.50", "10.0", "-4.0", "1.0"]
+    assert len({len(line) for line in lines[1:4]}) == 1
+    assert any("touches itself" in line for line in lines)
+    assert theta_csv(found).decode().splitlines()[1] == "0.5,10.000,-4.040,1.000"
+
+
+def test_ranges_of_the_finger() -> None:
+    assert ranges_json(FINGER)["range_reached_bar"] == pytest.approx(
+        [1.926, 2.111, 1.915], abs=1e-3
+    )
+    assert "joint 2: 0 to 100 deg reached at 2.11 bar (the paper: below 2.0 bar)" in ranges_text(
+        FINGER
+    )
+    low = replace(FINGER, states=FINGER.states[:2])
+    assert ranges_json(low)["range_reached_bar"][1] is None
+    assert "joint 2: 0 to 100 deg not reached" in ranges_text(low)
+
+
+def test_comparison_with_a_design(samples: Path) -> None:
+    design = load_design(samples / "paper_bulb.json")
+    angles = (34.9, 35.4, 35.0, 29.1, 19.7, -44.3)
+    text = compared_text(design, run(state(1.9, *angles)), Misfit(1.25, 3.0), "shape.csv")
+    assert "6       -45.0        -45.3   -44.3" in text
+    assert "off the target (shape.csv) at 1.90 bar: 1.2 mm RMS, 3.0 mm at most" in text
+    other = compared_text(design, run(state(1.0, *angles)), None, None)
+    assert "wanted" not in other  # at another pressure that compares nothing
+    assert "no target" in other
+    assert misfit_json(None, None) == {"fit": None}
+    assert misfit_json(Misfit(1.0, 2.0), "a")["fit"]["target"] == "a"
+
+
+def test_pictures_show_what_they_are_given() -> None:
+    plain = draw_theta(FINGER, "finger")
+    marked = draw_theta(FINGER, "finger", [Mark("formula", 2.0, (70.0, 80.0, 60.0))])
+    ended = draw_theta(replace(FINGER, critical=Critical("limit point", 2.25)), "finger")
+    assert len({plain, marked, ended}) == 3
+    assert plain == draw_theta(FINGER, "finger")
+    many = run(state(1.0, *range(1, 13)))
+    assert draw_theta(many, "twelve joints").startswith(b"\x89PNG")
+    assert draw_trajectories(many, "twelve joints").startswith(b"\x89PNG")
