@@ -145,9 +145,8 @@ class Chart:
         """Spins (S, 3) that fit du best."""
         moment = np.cross(arm, du)
         if self._half:
-            inertia = arm[..., 1] ** 2 + arm[..., 2] ** 2
-            both = np.stack([moment[..., 0], inertia], axis=-1)
-            sums = self._sum(both)
+            about_x = arm[..., 1] ** 2 + arm[..., 2] ** 2
+            sums = self._sum(np.stack([moment[..., 0], about_x], axis=-1))
             spin = np.zeros((len(sums), 3))
             spin[:, 0] = sums[:, 0] / sums[:, 1]
             return spin

@@ -167,12 +167,16 @@ def solve(
 
 
 def work_between(before: Equilibrium, after: Equilibrium) -> float:
-    """Work of the pressure between two states, N mm: V is a cubic in p with dV/dp at both ends."""
+    """Work of the pressure between two states, N mm.
+
+    V is taken as the cubic in p that dV/dp at both ends gives. From rest it is straight: all that
+    is not, the threads' tightening, happens at hardly any pressure.
+    """
+    if before.pressure == 0.0:
+        return 0.5 * after.compliance * after.pressure**2
     rise = after.pressure - before.pressure
     V0, V1 = before.forces.volume, after.forces.volume
-    area = 0.5 * (V0 + V1) * rise  # of V dp
-    if np.isfinite(before.compliance) and rise > 0.0:
-        area += rise**2 / 12.0 * (before.compliance - after.compliance)
+    area = 0.5 * (V0 + V1) * rise + rise**2 / 12.0 * (before.compliance - after.compliance)
     return after.pressure * V1 - before.pressure * V0 - area
 
 
