@@ -82,13 +82,13 @@ def gauss(orders: tuple[int, ...]) -> tuple[FloatArray, FloatArray]:
 
 @dataclass(frozen=True)
 class Reference:
-    """Shape gradients and weights at the Gauss points of one brick at rest.
+    """Shape gradients and weights at the Gauss points of bricks at rest; c bricks.
 
     Attributes
     ----------
-    dN : (3 q, n)
+    dN : (c, 3 q, n)
         By the reference coordinates, coordinate-major: row ``j * q + point``, 1/mm.
-    weights : (q,)
+    weights : (c, q)
         Reference volume of each point, mm^3.
     """
 
@@ -97,34 +97,35 @@ class Reference:
 
     @cached_property
     def weighted(self) -> FloatArray:
-        """The gradients times the weights: (3 q, n), mm^2."""
-        return self.dN * np.tile(self.weights, 3)[:, None]
+        """The gradients times the weights: (c, 3 q, n), mm^2."""
+        return self.dN * np.tile(self.weights, 3)[..., None]
 
     @cached_property
     def pairs(self) -> FloatArray:
-        """Products w dN_a,j dN_b,l: (9 q, n * n) with rows (j, l, point), mm."""
-        q, n = len(self.weights), self.dN.shape[1]
-        dN = self.dN.reshape(3, q, n)
-        products = np.einsum("q,jqa,lqb->jlqab", self.weights, dN, dN)
-        return np.ascontiguousarray(products.reshape(9 * q, n * n))
+        """Products w dN_a,j dN_b,l: (c, 9 q, n * n) with rows (j, l, point), mm."""
+        c, q, n = *self.weights.shape, self.dN.shape[2]
+        dN = self.dN.reshape(c, 3, q, n)
+        products = np.einsum("cq,cjqa,clqb->cjlqab", self.weights, dN, dN, optimize=True)
+        return np.ascontiguousarray(products.reshape(c, 9 * q, n * n))
 
 
 def reference(kind: Kind, X: ArrayLike, orders: tuple[int, int, int]) -> Reference:
-    """Gradients of a brick with nodes X (n, 3).
+    """Gradients of bricks with nodes X (c, n, 3), mm.
 
     Raises
     ------
     ValueError
-        When the brick is turned inside out.
+        When a brick is turned inside out.
     """
     points, w = gauss(orders)
     _, dN = shape(natural_nodes(kind), points)
-    jacobian = np.einsum("qna,ni->qia", dN, np.asarray(X, dtype=float))  # dX_i / dxi_a
+    jacobian = np.einsum("qna,cni->cqia", dN, np.asarray(X, dtype=float))  # dX_i / dxi_a
     volume = np.linalg.det(jacobian)
     if not (volume > 0.0).all():
         raise ValueError("a brick is turned inside out")
-    gradient = np.einsum("qna,qaj->jqn", dN, np.linalg.inv(jacobian))
-    return Reference(np.ascontiguousarray(gradient.reshape(-1, len(dN[0]))), w * volume)
+    gradient = np.einsum("qna,cqaj->cjqn", dN, np.linalg.inv(jacobian))
+    c, n = len(volume), dN.shape[1]
+    return Reference(np.ascontiguousarray(gradient.reshape(c, -1, n)), w * volume)
 
 
 @cache

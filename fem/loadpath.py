@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from fem.assembly import Forces, System
 from fem.errors import Attempt, NotConverged
-from fem.newton import Correction, correct
+from fem.newton import correct
 from fem.sections import Chart, Pose
 
 FloatArray = NDArray[np.float64]
@@ -48,7 +48,7 @@ class Options:
     tolerance: float = 1e-6
     between: float = 3e-3
     aim: float = 0.15
-    first: float = 0.04
+    first: float = 0.02
     smallest: float = 2e-3
     beyond: float = 0.0
 
@@ -68,6 +68,8 @@ class Equilibrium:
         Relative to the pressure's forces.
     asked : bool
         Whether this state shall be reported.
+    negative : int
+        Negative eigenvalues of the tangent; 0 where the state is stable under pressure.
     """
 
     pressure: float
@@ -76,6 +78,7 @@ class Equilibrium:
     compliance: float
     residual: float
     asked: bool
+    negative: int
 
 
 @dataclass(frozen=True)
@@ -148,26 +151,27 @@ class Path:
         self, pressure: float, volume: float | None, asked: bool
     ) -> tuple[Equilibrium | None, float]:
         """Predict and correct; give the equilibrium and the prediction's residual."""
-        loose = not (asked or self._careful)
+        loose = bool(self._known) and not (asked or self._careful)
         tolerance = self._options.between if loose else self._options.tolerance
         pose, pressure = self._predict(pressure, volume)
         done = correct(self._system, self._chart, pose, pressure, tolerance, volume)
         outcome: str = done.outcome
-        flow = 0.0
-        if done.outcome == "converged" and done.inverse is not None:
-            gradient = done.forces.volume_gradient
-            flow = float(gradient @ done.inverse.solve(gradient))
-            if volume is None and done.inverse.negative:
-                outcome = "unstable"
+        if outcome == "converged" and volume is None and done.negative:
+            outcome = "unstable"
         self.history.append(
             Attempt(done.pressure, done.iterations, done.factored, done.residual, outcome)
         )
         if outcome != "converged":
             self._careful = True  # what is extrapolated from must be right from now on
             return None, done.first
-        found = Equilibrium(done.pressure, done.pose, done.forces, flow, done.residual, asked)
+        if not self._known:
+            x = done.pose.x
+            self._flow = self._chart.increment(done.pose, self._system.expand(x, done.flow))
+        compliance = float(done.forces.volume_gradient @ done.flow)
+        found = Equilibrium(
+            done.pressure, done.pose, done.forces, compliance, done.residual, asked, done.negative
+        )
         self._known = [*self._known[-_ORDER:], found]
-        self._last = done
         return found, done.first
 
     def _predict(self, pressure: float, volume: float | None) -> tuple[Pose, float]:
@@ -177,8 +181,7 @@ class Path:
             return chart.taut(2.0 * self._system.mesh.actuator.gauze.transition), pressure
         last = known[-1]
         if len(known) == 1:
-            rise = chart.difference(chart.rest(), last.pose)
-            return chart.move(last.pose, rise * (pressure / last.pressure - 1.0)), pressure
+            return chart.move(last.pose, self._flow * (pressure - last.pressure)), pressure
         by_pressure = volume is None
         at = pressure if volume is None else volume
         places = np.array([e.pressure if by_pressure else e.forces.volume for e in known])
@@ -215,7 +218,6 @@ class Path:
                         raise self._failure(blocked)
                     return
                 continue
-            unstable = self._last.inverse is not None and self._last.inverse.negative > 0
             if self.critical is not None:
                 yield found
                 if volume >= end:
@@ -226,7 +228,7 @@ class Path:
                 if volume >= end:
                     return
                 yield found
-            elif unstable:
+            elif found.negative:
                 self.critical = Critical("bifurcation", before.pressure)
                 return
             elif found.pressure > blocked:
@@ -248,7 +250,7 @@ class Path:
             reached,
         )
 
-    _last: Correction
+    _flow: FloatArray  # per MPa, at the first state
 
 
 def lagrange(places: FloatArray, at: float) -> FloatArray:

@@ -138,10 +138,10 @@ def surface_weights(mesh: Mesh, phi: float) -> tuple[NDArray[np.int64], FloatArr
     turn = (phi - start_angle()) % (2.0 * np.pi)
     if mesh.half and turn > np.pi + 1e-12:
         turn, mirror = 2.0 * np.pi - turn, -1.0
-    span = (np.pi if mesh.half else 2.0 * np.pi) / mesh.around
-    k = min(int(turn / span + 1e-9), mesh.around - 1)
+    starts = mesh.columns - start_angle()
+    k = int(np.clip(np.searchsorted(starts, turn + 1e-9) - 1, 0, mesh.around - 1))
     m = face_nodes(mesh.size.kind)
-    eta = 2.0 * (turn - k * span) / span - 1.0
+    eta = float(np.clip(2.0 * (turn - starts[k]) / (starts[k + 1] - starts[k]) - 1.0, -1.0, 1.0))
     N, _ = shape(natural_nodes(mesh.size.kind)[-m:, 1:], [[eta, -1.0]])
     nodes = mesh.outer[k]
     keep = (nodes < mesh.ring) & (np.abs(N[0]) > 1e-12)
@@ -227,14 +227,13 @@ def threads(mesh: Mesh, x: FloatArray) -> Gauze:
 
 def largest_stretch(mesh: Mesh, x: FloatArray) -> float:
     """Largest principal stretch of the rubber at any Gauss point."""
-    worst = 0.0
-    first = np.arange(mesh.layers)[:, None, None] * (mesh.ring + mesh.mid)
-    scale = np.repeat(2.0 / mesh.heights, mesh.around)
+    worst, c = 0.0, mesh.around
+    first = np.arange(mesh.layers) * (mesh.ring + mesh.mid)
     for deep, brick in enumerate(mesh.brick):
-        bricks = mesh.bricks[deep * mesh.around : (deep + 1) * mesh.around]
-        nodes = (first + bricks).reshape(-1, bricks.shape[1])
-        F = (brick.dN @ x.reshape(-1, 3)[nodes].transpose(2, 1, 0)).reshape(3, 3, -1, len(nodes))
-        F[:, 2] *= scale
-        C = np.einsum("kiqe,kjqe->qeij", F, F)
+        nodes = mesh.bricks[deep * c : (deep + 1) * c, :, None] + first
+        gradient = brick.dN @ np.moveaxis(x.reshape(-1, 3)[nodes], 3, 0)
+        F = gradient.reshape(3, c, 3, -1, mesh.layers)
+        F[:, :, 2] *= 2.0 / mesh.heights
+        C = np.einsum("kciql,kcjql->cqlij", F, F)
         worst = max(worst, float(np.linalg.eigvalsh(C)[..., 2].max()))
     return float(np.sqrt(worst))

@@ -26,7 +26,7 @@ from fem.weave import axial_threads, hoop_threads
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-_GROWTH = 2.0
+_GIVE = 0.1  # how much sizes may be stretched to fill a length
 _HALF = np.pi
 
 
@@ -48,8 +48,10 @@ class Mesh:
         Nodes of a ring, and half-way in a layer.
     bricks : (through * around, n)
         Nodes of a layer's bricks among [ring, mid, next ring]; the outermost brick last.
+    columns : (around + 1,) rad
+        Where the bricks around begin and end, from the side that faces the object.
     brick : tuple of Reference
-        Of a brick of height 2 mm, one for each brick through the wall, inside first.
+        Of the bricks around, 2 mm high, one for each brick through the wall, inside first.
     outer, inner : (around, m)
         Nodes of a layer's outer and inner faces.
     fixed_ring, fixed_mid : (ring, 3), (mid, 3) bool
@@ -70,6 +72,7 @@ class Mesh:
     ring: int
     mid: int
     bricks: IntArray
+    columns: FloatArray
     brick: tuple[Reference, ...]
     outer: IntArray
     inner: IntArray
@@ -109,12 +112,12 @@ class Mesh:
 def make_mesh(actuator: Actuator, size: MeshSize = DEFAULT_MESH, whole: bool = False) -> Mesh:
     """Mesh an actuator: half of it where all sectors lie in one plane, unless ``whole``."""
     half = actuator.in_plane and not whole
-    around = size.around if half else 2 * size.around
-    places = _places(size, around, half)
+    columns = make_columns(actuator, size, half)
+    around = len(columns) - 1
+    places = _places(size, columns, half)
     bricks = _bricks(places, size, around)
     m = face_nodes(size.kind)
     ring_at, mid_at = _xy(actuator, places.ring), _xy(actuator, places.mid)
-    span = (_HALF if half else 2.0 * _HALF) / around
     z, segment = _stations(actuator, size)
     return Mesh(
         actuator=actuator,
@@ -122,8 +125,13 @@ def make_mesh(actuator: Actuator, size: MeshSize = DEFAULT_MESH, whole: bool = F
         ring=len(ring_at),
         mid=len(mid_at),
         bricks=bricks,
+        columns=columns,
         brick=tuple(
-            reference(size.kind, one_brick(actuator, size, span, n), size.orders)
+            reference(
+                size.kind,
+                [one_brick(actuator, size, span, n) for span in np.diff(columns)],
+                size.orders,
+            )
             for n in range(size.through)
         ),
         outer=bricks[-around:, -m:],
@@ -132,7 +140,7 @@ def make_mesh(actuator: Actuator, size: MeshSize = DEFAULT_MESH, whole: bool = F
         fixed_mid=_symmetry(mid_at, half),
         half=half,
         outer_ring=np.flatnonzero([p[0] == 1.0 for p in places.ring]),
-        **_along(actuator, size, z, segment, ring_at, mid_at, around, span),
+        **_along(actuator, size, z, segment, ring_at, mid_at, columns),
     )
 
 
@@ -150,8 +158,7 @@ def remesh(mesh: Mesh, actuator: Actuator) -> Mesh:
             share = (old - old[0]) / (old[-1] - old[0])
             z[own[0] : own[-1] + 2] = start + share * (end - start)
     ring_at, mid_at = mesh.X[0, : mesh.ring, :2], mesh.X[0, mesh.ring :, :2]
-    span = (_HALF if mesh.half else 2.0 * _HALF) / mesh.around
-    changed = _along(actuator, mesh.size, z, mesh.segment, ring_at, mid_at, mesh.around, span)
+    changed = _along(actuator, mesh.size, z, mesh.segment, ring_at, mid_at, mesh.columns)
     return replace(mesh, actuator=actuator, **changed)
 
 
@@ -162,8 +169,7 @@ def _along(
     segment: IntArray,
     ring_at: FloatArray,
     mid_at: FloatArray,
-    around: int,
-    span: float,
+    columns: FloatArray,
 ) -> dict[str, Any]:
     """Make what of a mesh depends on the places along the tube, and on the sectors."""
     X = np.zeros((len(z), len(ring_at) + len(mid_at), 3))
@@ -176,8 +182,8 @@ def _along(
         "z": z,
         "segment": segment,
         "X": X,
-        "axial": axial_threads(actuator, size, np.diff(z), sectors, around, span),
-        "hoop": hoop_threads(actuator, size, z, around, span),
+        "axial": axial_threads(actuator, size, np.diff(z), sectors, columns),
+        "hoop": hoop_threads(actuator, size, z, columns),
     }
 
 
@@ -191,16 +197,15 @@ class _Places:
     mid_index: dict[tuple[int, int], int]
 
 
-def _places(size: MeshSize, around: int, half: bool) -> _Places:
+def _places(size: MeshSize, columns: FloatArray, half: bool) -> _Places:
     """Put the nodes of a section in order, known by their place on a grid of half bricks."""
     step = 1 if size.kind == "hex20" else 2
-    deep, wide = 2 * size.through, 2 * around
-    span = (_HALF if half else 2.0 * _HALF) / wide
-    columns = wide + 1 if half else wide
+    deep = 2 * size.through
+    phi = np.interp(np.arange(0.0, len(columns) - 0.75, 0.5), np.arange(len(columns)), columns)
     places = _Places([], [], {}, {})
-    for j in range(0, columns, step):
+    for j in range(0, len(phi) if half else len(phi) - 1, step):
         for i in range(0, deep + 1, step):
-            where = (i / deep, start_angle() + j * span)
+            where = (i / deep, float(phi[j]))
             if i % 2 == 0 or j % 2 == 0:
                 places.ring_index[i, j] = len(places.ring)
                 places.ring.append(where)
@@ -208,6 +213,57 @@ def _places(size: MeshSize, around: int, half: bool) -> _Places:
                 places.mid_index[i, j] = len(places.mid)
                 places.mid.append(where)
     return places
+
+
+def make_columns(actuator: Actuator, size: MeshSize, half: bool) -> FloatArray:
+    """Cut the circumference into bricks that end where the uncut sectors do.
+
+    Across such an edge the strain has a kink, and at the corners of the cut it is singular:
+    bricks that end there and are narrow beside it are worth twice their number elsewhere. Edges
+    nearer to each other than such a brick, or to the plane of symmetry, share a cut.
+
+    Returns
+    -------
+    (around + 1,) rad, from the side that faces the object
+    """
+    whole = _HALF if half else 2.0 * _HALF
+    widest = _HALF / size.around
+    if size.beside == 0.0:
+        return start_angle() + np.linspace(0.0, whole, round(whole / widest) + 1)
+    edges = []
+    for window in actuator.windows:
+        reach = 0.5 * (window.alpha + actuator.gauze.allowance)
+        for edge in (window.center - reach, window.center + reach):
+            turn = (edge - start_angle()) % (2.0 * _HALF)
+            edges.append(min(turn, 2.0 * _HALF - turn) if half else turn)
+    cuts = _merged(sorted(edges), size.beside, whole)
+    ends = [0.0, *cuts, whole]
+    free = widest if half or not cuts else size.beside  # a whole tube starts anywhere
+    heights = [
+        _graded(
+            b - a,
+            size.beside if k > 0 else free,
+            size.beside if k < len(cuts) else free,
+            widest,
+            growth=2.0,
+        )
+        for k, (a, b) in enumerate(pairwise(ends))
+    ]
+    columns = np.concatenate([[0.0], np.cumsum(np.concatenate(heights))])
+    columns[-1] = whole
+    return start_angle() + columns
+
+
+def _merged(edges: list[float], apart: float, whole: float) -> list[float]:
+    """Give one place for all edges that lie within ``apart``, none that near to the ends."""
+    groups: list[list[float]] = []
+    for edge in edges:
+        if groups and edge - groups[-1][0] <= apart:
+            groups[-1].append(edge)
+        else:
+            groups.append([edge])
+    middles = [sum(group) / len(group) for group in groups]
+    return [m for m in middles if 0.5 * apart < m < whole - 0.5 * apart]
 
 
 def _bricks(places: _Places, size: MeshSize, around: int) -> IntArray:
@@ -253,7 +309,7 @@ def _stations(actuator: Actuator, size: MeshSize) -> tuple[FloatArray, IntArray]
         first = size.end if number == 0 else size.edge
         last = size.end if number == len(edges) - 2 else size.edge
         most = size.window if number % 2 else size.wrapped
-        heights = _graded(length, first * k, last * k, most * k)
+        heights = _graded(length, first * k, last * k, most * k, size.growth)
         places = start + np.cumsum(heights)
         places[-1] = end
         z.extend(places.tolist())
@@ -261,17 +317,17 @@ def _stations(actuator: Actuator, size: MeshSize) -> tuple[FloatArray, IntArray]
     return np.array(z), np.array(segment)
 
 
-def _graded(length: float, first: float, last: float, most: float) -> FloatArray:
-    """Heights that grow from both ends, shrunk to fill the length."""
+def _graded(length: float, first: float, last: float, most: float, growth: float) -> FloatArray:
+    """Sizes that grow from both ends, shrunk or a little stretched to fill the length."""
     left, right = list[float](), list[float]()
     a, b, total = min(first, most), min(last, most), 0.0
-    while total < length * (1.0 - 1e-9):
+    while total * (1.0 + _GIVE) < length * (1.0 - 1e-9):
         if a <= b:
             left.append(a)
             total += a
-            a = min(_GROWTH * a, most)
+            a = min(growth * a, most)
         else:
             right.append(b)
             total += b
-            b = min(_GROWTH * b, most)
+            b = min(growth * b, most)
     return np.array(left + right[::-1]) * (length / total)

@@ -20,10 +20,15 @@ class MeshSize:
     Attributes
     ----------
     around : int
-        Bricks in half of the circumference.
+        Bricks in half of the circumference, if all were as wide as the widest.
+    beside : float
+        Width of the bricks beside the edge of an uncut sector, rad; 0 for bricks all alike.
+        Widths double from one brick to the next.
     edge, window, wrapped, end : float
         Height of a layer at a window's edge, at most in windows and in wrapped sectors, and at
-        the clamped end and the plug. Heights double from one layer to the next.
+        the clamped end and the plug.
+    growth : float
+        Of the heights from one layer to the next.
     kind : {"hex20", "hex8"}
     through : int
         Bricks through the wall.
@@ -33,11 +38,13 @@ class MeshSize:
         Take the volume change from the brick's mean: the cure that 8-node bricks need.
     """
 
-    around: int = 10
-    edge: float = 0.7
-    window: float = 3.0
+    around: int = 5
+    beside: float = float(np.radians(12.0))
+    edge: float = 0.2
+    window: float = 2.5
     wrapped: float = 8.0
     end: float = 4.0
+    growth: float = 3.0
     kind: Kind = "hex20"
     through: int = 1
     orders: tuple[int, int, int] = (2, 3, 2)
@@ -46,7 +53,7 @@ class MeshSize:
 
 DEFAULT_MESH = MeshSize()
 # The paper's: 8-node bricks of 1 mm, two through the wall.
-PAPER_MESH = MeshSize(31, 1.0, 1.0, 1.0, 1.0, "hex8", 2, (2, 2, 2), mean_dilatation=True)
+PAPER_MESH = MeshSize(31, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0, "hex8", 2, (2, 2, 2), mean_dilatation=True)
 
 
 def start_angle() -> float:

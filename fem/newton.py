@@ -15,6 +15,8 @@ from fem.slack import Switching
 FloatArray = NDArray[np.float64]
 Outcome = Literal["converged", "residual", "inverted"]
 
+_MOST = 10  # factorisations after which it gives up
+_HOPELESS = 1e6  # so does it when the residual has grown this much
 _DAMPINGS = 4
 
 
@@ -25,11 +27,14 @@ class Correction:
     Attributes
     ----------
     outcome : {"converged", "residual", "inverted"}
+        The residual stayed too large, or a brick turned inside out.
     pose : Pose
     pressure : float, MPa
     forces : Forces
-    inverse : Inverse or None
-        The last factored tangent, at the state before the last steps.
+    flow : (count,) mm/MPa
+        Change of the unknowns with the pressure, by the last factored tangent.
+    negative : int
+        Negative eigenvalues of that tangent.
     first, residual : float
         Residual of the predicted and of the last state, relative to the pressure's forces.
     factored, iterations : int
@@ -40,7 +45,8 @@ class Correction:
     pose: Pose
     pressure: float
     forces: Forces
-    inverse: Inverse | None
+    flow: FloatArray
+    negative: int
     first: float
     residual: float
     factored: int
@@ -54,7 +60,6 @@ def correct(
     pressure: float,
     tolerance: float,
     volume: float | None = None,
-    most: int = 10,
 ) -> Correction:
     """Bring a predicted state into equilibrium.
 
@@ -70,42 +75,38 @@ def correct(
         Of the residual, relative to the pressure's forces.
     volume : float, optional
         Enclosed volume to hold, mm^3 (half of it in a half model); the pressure is then unknown.
-    most : int
-        Factorisations after which it gives up.
     """
-    first = np.inf
-    iterations = 0
-    for factored in range(1, most + 1):
+    outcome: Outcome = "residual"
+    first = residual = np.inf
+    flow, negative = np.zeros(system.unknowns.count), 0
+    factored = iterations = 0
+    while factored < _MOST:
         forces, inverse = system.factor(pose.x, pressure)
+        factored += 1
         if inverse is None:
-            return Correction(
-                "inverted", pose, pressure, forces, None, first, np.inf, factored, iterations
-            )
+            outcome = "inverted"
+            break
+        negative = inverse.negative
         residual = relative_residual(forces, pressure, volume)
-        if factored == 1:
-            first = residual
-            if not np.isfinite(first):
-                break
+        first = residual if factored == 1 else first
         if residual <= tolerance:
-            return Correction(
-                "converged", pose, pressure, forces, inverse, first, residual, factored, iterations
-            )
-        moved = _step(system, chart, pose, pressure, forces, inverse, volume)
+            flow = inverse.solve(forces.volume_gradient)
+            outcome = "converged"
+            break
+        moved, flow = _step(system, chart, pose, pressure, forces, inverse, volume)
         if moved is None:
-            return Correction(
-                "inverted", pose, pressure, forces, inverse, first, residual, factored, iterations
-            )
+            outcome = "inverted"
+            break
         pose, pressure, forces = moved
         iterations += 1
         residual = relative_residual(forces, pressure, volume)
         if residual <= tolerance:
-            return Correction(
-                "converged", pose, pressure, forces, inverse, first, residual, factored, iterations
-            )
-        if not residual < 1e6 * max(first, 1.0):
+            outcome = "converged"
+            break
+        if not residual < _HOPELESS * max(first, 1.0):
             break
     return Correction(
-        "residual", pose, pressure, forces, inverse, first, residual, factored, iterations
+        outcome, pose, pressure, forces, flow, negative, first, residual, factored, iterations
     )
 
 
@@ -126,14 +127,13 @@ def _step(
     forces: Forces,
     inverse: Inverse,
     volume: float | None,
-) -> tuple[Pose, float, Forces] | None:
-    """Take one step, shortened where a brick would turn inside out."""
+) -> tuple[tuple[Pose, float, Forces] | None, FloatArray]:
+    """Take one step, shortened where a brick would turn inside out; give the flow too."""
     threads = Switching(system, inverse, pose.x)
-    du = threads.solve(-forces.residual(pressure))
+    g = forces.volume_gradient
+    du, flow = threads.solve(-forces.residual(pressure), g)
     rise = 0.0
     if volume is not None:
-        g = forces.volume_gradient
-        flow = inverse.solve(g)
         rise = (volume - forces.volume - float(g @ du)) / float(g @ flow)
         du = du + rise * flow
     increment = chart.increment(pose, system.expand(pose.x, du))
@@ -142,6 +142,6 @@ def _step(
         moved = chart.move(pose, share * increment)
         new = system.forces(moved.x)
         if new.least_J > 0.0:
-            return moved, pressure + share * rise, new
+            return (moved, pressure + share * rise, new), flow
         share *= 0.4
-    return None
+    return None, flow

@@ -39,15 +39,15 @@ class Part:
     def __init__(self, mesh: Mesh, unknowns: Unknowns, layers: range, *, from_root: bool) -> None:
         self.mesh, self.unknowns, self.from_root = mesh, unknowns, from_root
         self.order = layers if from_root else layers[::-1]
-        around, n = mesh.around, mesh.bricks.shape[1]
+        n = mesh.bricks.shape[1]
         self.chunks = _chunks(self.order, max(1, _CHUNK // len(mesh.bricks)))
-        self.pair = max((len(c) for c in self.chunks), default=0) * around * n * n
+        self.column = max((len(c) for c in self.chunks), default=0) * n * n
         self.work = solid.Workspace()
 
         def pattern(*, clamped: bool) -> Pattern:
             return make_pattern(
                 mesh, unknowns, from_root=from_root, clamped=clamped,
-                stride=6 * self.pair, pair=self.pair,
+                column=self.column,
             )  # fmt: skip
 
         plain = pattern(clamped=False)
@@ -85,50 +85,51 @@ class Part:
                 for layer in chunk if self.from_root else chunk[::-1]:
                     self._eliminate(layer, layer - chunk.start, x, pressure, plug)
 
+    def _stiffness(self) -> FloatArray:
+        """Return the bricks' stiffness (through, 6, around, column), layers one after another."""
+        mesh = self.mesh
+        return self.work.get("stiffness", (mesh.size.through, 6, mesh.around, self.column))
+
     def _add_forces(self, chunk: range, x: FloatArray, pressure: float, tangent: bool) -> None:
-        mesh, work = self.mesh, self.work
-        around, n, m = mesh.around, mesh.bricks.shape[1], mesh.outer.shape[1]
-        E = len(chunk) * around
-        first = np.asarray(chunk)[:, None, None] * (mesh.ring + mesh.mid)
+        mesh = self.mesh
+        c, n, m, L = mesh.around, mesh.bricks.shape[1], mesh.outer.shape[1], len(chunk)
+        first = np.asarray(chunk) * (mesh.ring + mesh.mid)
         flat = x.reshape(-1, 3)
-        heights = np.repeat(mesh.heights[chunk.start : chunk.stop], around)
         internal, gradient = self.internal.reshape(-1, 3), self.gradient.reshape(-1, 3)
-        through = mesh.size.through
-        stiffness = work.get("stiffness", (through, 6, self.pair))[:, :, : E * n * n]
-        for deep in range(through):
-            bricks = mesh.bricks[deep * around : (deep + 1) * around]
-            nodes = (first + bricks).reshape(E, n)
+        stiffness = self._stiffness()[..., : L * n * n]
+        for deep in range(mesh.size.through):
+            nodes = mesh.bricks[deep * c : (deep + 1) * c, :, None] + first  # (c, n, L)
             state = solid.respond(
                 mesh.actuator.rubber,
                 mesh.brick[deep],
-                heights,
-                np.ascontiguousarray(flat[nodes].transpose(2, 1, 0)),
-                work,
-                stiffness[deep].reshape(6, E, n * n) if tangent else None,
+                mesh.heights[chunk.start : chunk.stop],
+                np.ascontiguousarray(np.moveaxis(flat[nodes], 3, 0)),
+                self.work,
+                stiffness[deep].reshape(6, c, L, n * n) if tangent else None,
                 mean_dilatation=mesh.size.mean_dilatation,
             )
             self.least_J = min(self.least_J, state.least_J)
             if not self.least_J > 0.0:
                 return
-            self.energy += float(state.energy.sum())
-            _scatter(internal, nodes, state.force.transpose(2, 1, 0))
-        faces = slice(chunk.start * around, chunk.stop * around)
-        outer = (first + mesh.outer).reshape(E, m)
-        skin = stiffness[-1].reshape(6, E, n, n)[:, :, n - m :, n - m :]
+            self.energy += state.energy
+            _scatter(internal, nodes, state.force)
+        faces = slice(chunk.start * c, chunk.stop * c)
+        outer = first[:, None, None] + mesh.outer  # (L, c, m)
+        skin = stiffness[-1].reshape(6, c, L, n, n)[..., n - m :, n - m :]
         for family in (mesh.axial, mesh.hoop):
             threads = Threads(family.gradient[faces], family.weight[faces])
-            pull = gauze.respond(mesh.actuator.gauze, threads, flat[outer], tangent)
+            pull = gauze.respond(mesh.actuator.gauze, threads, flat[outer.reshape(-1, m)], tangent)
             self.energy += float(pull.energy.sum())
-            _scatter(internal, outer, pull.force)
+            _scatter(internal, outer, np.moveaxis(pull.force, 2, 0))
             if pull.stiffness is not None:
-                skin += pull.stiffness.transpose(1, 0, 2).reshape(6, E, m, m)
-        inner = (first + mesh.inner).reshape(E, m)
-        volume, dV, h = face_volumes(np.ascontiguousarray(flat[inner].transpose(2, 1, 0)), tangent)
+                skin += pull.stiffness.reshape(L, c, 6, m, m).transpose(2, 1, 0, 3, 4)
+        inner = (mesh.inner.T[:, :, None] + first).reshape(m, -1)  # (m, c L)
+        volume, dV, h = face_volumes(np.ascontiguousarray(np.moveaxis(flat[inner], 2, 0)), tangent)
         self.volume += float(volume.sum())
-        _scatter(gradient, inner, dV.transpose(2, 1, 0))
+        _scatter(gradient, inner, dV)
         if h is not None:
-            wall = stiffness[0].reshape(6, E, n, n)[:, :, :m, :m]
-            h = pressure * h.transpose(0, 3, 1, 2)
+            wall = stiffness[0].reshape(6, c, L, n, n)[..., :m, :m]
+            h = pressure * np.moveaxis(h.reshape(3, m, m, c, L), (3, 4), (1, 2))
             wall[1] -= h[2]
             wall[2] += h[1]
             wall[4] -= h[0]
@@ -138,8 +139,7 @@ class Part:
     ) -> None:
         pattern, pivot, coupling = self.patterns[layer], self.pivots[layer], self.couplings[layer]
         b, r = pattern.block, pattern.far
-        stiffness = self.work.get("stiffness", (self.mesh.size.through * 6 * self.pair,))
-        source = stiffness[place * self.mesh.around * self.mesh.bricks.shape[1] ** 2 :]
+        source = self._stiffness().reshape(-1)[place * self.mesh.bricks.shape[1] ** 2 :]
         step = self.scratch[pattern]
         for rank, (at, to) in enumerate(zip(pattern.source, pattern.target, strict=True)):
             values = self.work.get("entries", at.shape)
@@ -251,9 +251,9 @@ def _chunks(order: range, most: int) -> list[range]:
 
 
 def _scatter(into: FloatArray, nodes: IntArray, values: FloatArray) -> None:
-    """Add values (E, n, 3) to the rows ``nodes`` (E, n) of ``into`` (N, 3)."""
+    """Add values (3, ...) to the rows ``nodes`` (...) of ``into`` (N, 3)."""
     low = int(nodes.min())
     size = int(nodes.max()) - low + 1
     at = nodes.ravel() - low
     for i in range(3):
-        into[low : low + size, i] += np.bincount(at, values[..., i].ravel(), size)
+        into[low : low + size, i] += np.bincount(at, values[i].ravel(), size)

@@ -86,7 +86,7 @@ class Pattern:
 
 
 def make_pattern(
-    mesh: Mesh, unknowns: Unknowns, *, from_root: bool, clamped: bool, stride: int, pair: int
+    mesh: Mesh, unknowns: Unknowns, *, from_root: bool, clamped: bool, column: int
 ) -> Pattern:
     """Lay out a layer's step.
 
@@ -98,9 +98,8 @@ def make_pattern(
         Whether the step goes toward the closed end.
     clamped : bool
         Whether the ring behind is the clamped one.
-    stride, pair : int
-        Steps in the stiffness array between bricks on top of each other, and between the pairs
-        (i, k) of one brick.
+    column : int
+        Step in the stiffness array (through, 6, around, column) between columns of bricks.
     """
     ring, mid = mesh.ring, mesh.mid
     place = np.full((2 * ring + mid, 3), -1)
@@ -112,7 +111,7 @@ def make_pattern(
     for where, free in order:
         block = _number(place[where], free, block)
     far = _number(place[ahead[0]], ahead[1], block) - block
-    at, to = _entries(mesh, place, block, far, stride, pair)
+    at, to = _entries(mesh, place, block, far, column)
     ranks = _ranked(to)
     flat = place.reshape(-1)
     numbered = np.flatnonzero(flat >= 0)
@@ -137,7 +136,7 @@ def _number(place: IntArray, free: IntArray, start: int) -> int:
 
 
 def _entries(
-    mesh: Mesh, place: IntArray, block: int, far: int, stride: int, pair: int
+    mesh: Mesh, place: IntArray, block: int, far: int, column: int
 ) -> tuple[IntArray, IntArray]:
     around, n = len(mesh.outer), mesh.bricks.shape[1]
     sources, targets = [], []
@@ -145,12 +144,12 @@ def _entries(
     for number, nodes in enumerate(mesh.bricks):
         deep, k = divmod(number, around)
         for m, (i, j) in enumerate(PAIRS):
-            row, column = place[nodes[a], i], place[nodes[b], j]
-            low, high = np.minimum(row, column), np.maximum(row, column)
+            row, other = place[nodes[a], i], place[nodes[b], j]
+            low, high = np.minimum(row, other), np.maximum(row, other)
             keep = low >= 0
             if i == j:
-                keep &= row <= column  # the other half stands there too
-            at = deep * stride + m * pair + k * n * n + np.arange(n * n)
+                keep &= row <= other  # the other half stands there too
+            at = ((deep * 6 + m) * around + k) * column + np.arange(n * n)
             in_pivot = low * block + high
             in_coupling = block * block + low * far + (high - block)
             in_next = block * (block + far) + (low - block) * far + (high - block)

@@ -147,15 +147,15 @@ class Chart:
         if self._half:
             about_x = arm[..., 1] ** 2 + arm[..., 2] ** 2
             sums = self._sum(np.stack([moment[..., 0], about_x], axis=-1))
-            spin = np.zeros((len(sums), 3))
+            spin: FloatArray = np.zeros((len(sums), 3))
             spin[:, 0] = sums[:, 0] / sums[:, 1]
             return spin
         outer = arm[..., :, None] * arm[..., None, :]
         tensor = (arm**2).sum(axis=-1)[..., None, None] * np.eye(3) - outer
         packed = np.concatenate([moment, tensor.reshape(*arm.shape[:-1], 9)], axis=-1)
         sums = self._sum(packed)
-        solved: FloatArray = np.linalg.solve(sums[:, 3:].reshape(-1, 3, 3), sums[:, :3, None])
-        return solved[..., 0]
+        inertia, total = sums[:, 3:].reshape(-1, 3, 3), sums[:, :3, None]
+        return np.asarray(np.linalg.solve(inertia, total)[..., 0])
 
     def _sum(self, nodal: FloatArray) -> FloatArray:
         return self._interleave(

@@ -38,18 +38,19 @@ class Workspace:
 
 @dataclass(frozen=True)
 class SolidState:
-    """Bricks at a deformed state.
+    """Bricks at a deformed state, c columns of L.
 
     Attributes
     ----------
-    energy : (E,) N mm
-    force : (3, n, E) N
+    energy : float, N mm
+        NaN where a brick is turned inside out.
+    force : (3, c, n, L) N
         Gradient of the energy by the nodal positions.
     least_J : float
         Smallest determinant of F at any point.
     """
 
-    energy: FloatArray
+    energy: float
     force: FloatArray
     least_J: float
 
@@ -64,64 +65,64 @@ def respond(
     *,
     mean_dilatation: bool = False,
 ) -> SolidState:
-    """Energy, nodal forces and stiffness of bricks.
+    """Energy, nodal forces and stiffness of columns of bricks.
 
     Parameters
     ----------
     rubber : MooneyRivlin
     reference : Reference
-        Of the brick 2 mm high that all bricks are stretched copies of.
-    heights : (E,) mm
-    x : (3, n, E)
+        Of c bricks 2 mm high; all bricks of a column are stretched copies of its own.
+    heights : (L,) mm
+        Of the bricks of each column.
+    x : (3, c, n, L)
         Current nodal positions, mm.
     work : Workspace
-    stiffness : (6, E, n * n) N/mm, optional
+    stiffness : (6, c, L, n * n) N/mm, optional
         Takes the stiffness for the pairs (i, k) of `fem.material.PAIRS`, where it is wanted.
     mean_dilatation : bool
-        Take the volume change from the brick's mean (Simo, Taylor and Pister 1985).
-
-    Returns
-    -------
-    SolidState
-        With NaN energy where a brick is turned inside out.
+        Take the volume change from each brick's mean (Simo, Taylor and Pister 1985).
     """
-    E, n = x.shape[2], x.shape[1]
-    dN, weights = reference.dN, reference.weights
-    q = len(weights)
+    _, c, n, L = x.shape
+    q = reference.weights.shape[1]
     stretch_z = 2.0 / heights
-    gradient = work.get("gradient", (3, 3 * q, E))
-    np.matmul(dN, x, out=gradient)
-    F = gradient.reshape(3, 3, q, E)
+    # Memory runs (i, column, j, point, layer), so that products see whole matrices.
+    gradient = work.get("gradient", (3, c, 3 * q, L))
+    np.matmul(reference.dN, x, out=gradient)
+    F = np.moveaxis(gradient.reshape(3, c, 3, q, L), 1, 2)
     F[:, 2] *= stretch_z
     k = kinematics(F)
     least = float(k.J.min())
     if not least > 0.0:
-        return SolidState(np.full(E, np.nan), np.zeros_like(x), least)
-    volume = weights[:, None] * (0.5 * heights)
+        return SolidState(np.nan, np.zeros_like(x), least)
+    volume = reference.weights[..., None] * (0.5 * heights)
     if mean_dilatation:
-        total = volume.sum(axis=0)
-        mean = (volume * k.J).sum(axis=0) / total
+        total = volume.sum(axis=1)
+        mean = (volume * k.J).sum(axis=1) / total
         U, p, bulk = volumetric(rubber, mean)
-        energy = (volume * isochoric_energy(rubber, k)).sum(axis=0) + total * U
-        p, local_bulk = np.broadcast_to(p, k.J.shape), 0.0
+        energy = (volume * isochoric_energy(rubber, k)).sum() + (total * U).sum()
+        p, local_bulk = np.broadcast_to(p[:, None], k.J.shape), 0.0
     else:
         U, p, bulk = volumetric(rubber, k.J)
-        energy = (volume * (isochoric_energy(rubber, k) + U)).sum(axis=0)
+        energy = (volume * (isochoric_energy(rubber, k) + U)).sum()
         local_bulk = bulk
-    P = stress(rubber, k, p, out=work.get("stress", (3, 3, q, E)))
+    stresses = work.get("stress", (3, c, 3, q, L))
+    P = stress(rubber, k, p, out=np.moveaxis(stresses, 1, 2))
     P[:, :2] *= 0.5 * heights  # the third column's 2 / h and the volume's h / 2 cancel
-    force = np.matmul(reference.weighted.T, P.reshape(3, 3 * q, E))
+    across = np.swapaxes(reference.weighted, 1, 2)
+    force = across @ stresses.reshape(3, c, 3 * q, L)
+    state = SolidState(float(energy), force, least)
     if stiffness is None:
-        return SolidState(energy, force, least)
-    A = tangent(rubber, k, p, local_bulk, out=work.get("tangent", (6, 3, 3, q, E)))
+        return state
+    moduli = work.get("tangent", (6, c, 3, 3, q, L))
+    A = tangent(rubber, k, p, local_bulk, out=np.moveaxis(moduli, 1, 3))
     A[:, :2, :2] *= 0.5 * heights
     A[:, 2, 2] *= stretch_z
-    np.matmul(A.reshape(6, 9 * q, E).transpose(0, 2, 1), reference.pairs, out=stiffness)
+    np.matmul(np.swapaxes(moduli.reshape(6, c, 9 * q, L), 2, 3), reference.pairs, out=stiffness)
     if mean_dilatation:
-        H = k.H
-        H[:, :2] *= 0.5 * heights
-        h = np.matmul(reference.weighted.T, H.reshape(3, 3 * q, E))  # d(volume)/dx
+        H = np.moveaxis(k.H, 2, 1).copy()
+        H[:, :, :2] *= 0.5 * heights
+        h = across @ H.reshape(3, c, 3 * q, L)  # d(volume)/dx
         for m, (i, j) in enumerate(PAIRS):
-            product = h[i][:, None, :] * h[j][None, :, :] * (bulk / total)
-            stiffness[m] += product.reshape(n * n, E).T
-    return SolidState(energy, force, least)
+            product = h[i][:, :, None] * h[j][:, None] * (bulk / total)[:, None, None]
+            stiffness[m] += np.moveaxis(product.reshape(c, n * n, L), 1, 2)
+    return state

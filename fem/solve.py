@@ -142,7 +142,7 @@ def solve(
         system = System(mesh, threads)
         try:
             rest = system.forces(mesh.X)
-            at_rest = Equilibrium(0.0, chart.rest(), rest, np.nan, 0.0, True)
+            at_rest = Equilibrium(0.0, chart.rest(), rest, np.nan, 0.0, True, 0)
             states = [_state(mesh, at_rest, 0.0)]
             path = Path(system, chart, options)
             before, work = at_rest, 0.0

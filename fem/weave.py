@@ -29,8 +29,7 @@ def axial_threads(
     size: MeshSize,
     heights: FloatArray,
     sectors: Sequence[Window | None],
-    around: int,
-    span: float,
+    columns: FloatArray,
 ) -> Threads:
     """Place the axial threads.
 
@@ -41,16 +40,13 @@ def axial_threads(
     heights : (layers,) mm
     sectors : sequence
         The window of each layer, None where it is wrapped.
-    around : int
-        Faces of a layer.
-    span : float
-        Angle of a face, rad.
+    columns : (around + 1,) rad
+        Where the faces of a layer begin and end.
     """
     gauze = actuator.gauze
-    starts = start_angle() + span * np.arange(around, dtype=float)
+    around = len(columns) - 1
     cache = {
-        window: _lines(gauze, actuator.radius, starts, span, window, size)
-        for window in {None, *sectors}
+        window: _lines(gauze, actuator.radius, columns, window, size) for window in {None, *sectors}
     }
     most = max(eta.shape[1] for eta, _ in cache.values())
     zeta, along = np.polynomial.legendre.leggauss(size.orders[2])
@@ -67,8 +63,7 @@ def axial_threads(
 def _lines(
     gauze: Gauze,
     radius: float,
-    starts: FloatArray,
-    span: float,
+    columns: FloatArray,
     window: Window | None,
     size: MeshSize,
 ) -> tuple[FloatArray, FloatArray]:
@@ -78,48 +73,48 @@ def _lines(
     of a sector need not lie on the mesh.
     """
     if gauze.pitch is not None:
-        return _single_lines(gauze, radius, starts, span, window)
+        return _single_lines(gauze, radius, columns, window)
     points, w = np.polynomial.legendre.leggauss(size.orders[1])
-    parts = np.array([_covered(gauze, start, span, window) for start in starts])
+    parts = np.array([_covered(gauze, start, end, window) for start, end in pairwise(columns)])
     a, b = parts[..., 0, None], parts[..., 1, None]
     eta = 0.5 * (a + b) + 0.5 * (b - a) * points
-    width = 0.5 * (b - a) * w * (0.5 * span * radius)
+    width = 0.5 * (b - a) * w * (0.5 * radius * np.diff(columns)[:, None, None])
     keep = (b - a)[..., 0].any(axis=0)
     keep[0] = True
-    flat = (len(starts), -1)
+    flat = (len(columns) - 1, -1)
     return eta[:, keep].reshape(flat), width[:, keep].reshape(flat)
 
 
 def _covered(
-    gauze: Gauze, start: float, span: float, window: Window | None
+    gauze: Gauze, start: float, end: float, window: Window | None
 ) -> list[tuple[float, float]]:
     """Give the covered parts of a face in eta, at most two."""
     if window is None:
         return [(-1.0, 1.0), (0.0, 0.0)]
-    half = 0.5 * (window.alpha + gauze.allowance)
+    half, span = 0.5 * (window.alpha + gauze.allowance), end - start
     parts = []
     for turn in (-2.0 * np.pi, 0.0, 2.0 * np.pi):
         middle = window.center - np.floor((window.center - start) / (2.0 * np.pi)) * 2.0 * np.pi
         low = max(middle + turn - half, start)
-        high = min(middle + turn + half, start + span)
-        if high > low:
+        high = min(middle + turn + half, end)
+        if high - low > 1e-9 * span:
             parts.append((2.0 * (low - start) / span - 1.0, 2.0 * (high - start) / span - 1.0))
     return (parts + [(0.0, 0.0)] * 2)[:2]
 
 
 def _single_lines(
-    gauze: Gauze, radius: float, starts: FloatArray, span: float, window: Window | None
+    gauze: Gauze, radius: float, columns: FloatArray, window: Window | None
 ) -> tuple[FloatArray, FloatArray]:
     """Single threads at the pitch, the first one facing the object."""
     assert gauze.pitch is not None
     count = max(4, round(2.0 * np.pi * radius / gauze.pitch))
     step = 2.0 * np.pi / count
     rows = []
-    for start in starts:
+    for start, end in pairwise(columns):
         row = []
         for k in range(count + 1):
             phi = start_angle() + k * step
-            eta = 2.0 * (phi - start) / span - 1.0
+            eta = 2.0 * (phi - start) / (end - start) - 1.0
             if not -1.0 - 1e-9 <= eta <= 1.0 + 1e-9:
                 continue
             # A thread on the border of two faces counts half in each.
@@ -135,9 +130,7 @@ def _single_lines(
     return table[..., 0], table[..., 1]
 
 
-def hoop_threads(
-    actuator: Actuator, size: MeshSize, z: FloatArray, around: int, span: float
-) -> Threads:
+def hoop_threads(actuator: Actuator, size: MeshSize, z: FloatArray, columns: FloatArray) -> Threads:
     """Place the hoop threads, which no cut severs: on all faces of layers between z (mm)."""
     gauze, heights = actuator.gauze, np.diff(z)
     rule, w = np.polynomial.legendre.leggauss(size.orders[2])
@@ -150,22 +143,21 @@ def hoop_threads(
     dN = _face_gradient(
         size, np.broadcast_to(eta, shape_at), np.broadcast_to(zeta[:, :, None], shape_at)
     )
-    arc = 0.5 * span * actuator.radius
     gradient = dN[..., 0].reshape(len(heights), 1, -1, dN.shape[-2])
     # The face is a parabola, not quite an arc: along the thread by its own speed.
-    speed = np.linalg.norm(gradient @ _face_positions(actuator, size, span), axis=-1)
-    gradient = gradient / speed[..., None]
-    weight = gauze.stiffness * (width[:, :, None] * around_w * arc).reshape(len(heights), 1, -1)
-    ones = np.ones((1, around, 1))
+    speed = np.linalg.norm(gradient @ _face_positions(actuator, size, columns), axis=-1)
+    weight = gauze.stiffness * (width[:, :, None] * around_w).reshape(len(heights), 1, -1) * speed
+    faces = speed.shape[0] * speed.shape[1]
     return Threads(
-        (gradient * ones[..., None]).reshape(-1, *gradient.shape[2:]),
-        (weight * (speed / arc) * ones).reshape(len(heights) * around, -1),
+        (gradient / speed[..., None]).reshape(faces, *gradient.shape[2:]),
+        weight.reshape(faces, -1),
     )
 
 
-def _face_positions(actuator: Actuator, size: MeshSize, span: float) -> FloatArray:
-    brick = one_brick(actuator, size, span, size.through - 1)[-face_nodes(size.kind) :]
-    flat: FloatArray = brick * [1.0, 1.0, 0.0]
+def _face_positions(actuator: Actuator, size: MeshSize, columns: FloatArray) -> FloatArray:
+    """Nodes of a layer's outer faces, each turned to +x and laid flat along z: (around, n, 3)."""
+    bricks = [one_brick(actuator, size, span, size.through - 1) for span in np.diff(columns)]
+    flat: FloatArray = np.array(bricks)[:, -face_nodes(size.kind) :] * [1.0, 1.0, 0.0]
     return flat
 
 
