@@ -228,7 +228,7 @@ def magnitude(theta_deg: float, center_deg: float) -> float:
 
 def shortly(error: NotConverged) -> str:
     """Say in a few words how far a run came that did not converge."""
-    return f"{error}, after {_BAR * error.reached:.2f} bar"
+    return f"no equilibrium found beyond {_BAR * error.reached:.2f} bar"
 
 
 def said(critical: Critical) -> str:
