@@ -55,8 +55,8 @@ class Chart:
 
     def rest(self) -> Pose:
         """Return the tube at rest."""
-        centre = np.zeros((len(self.z), 3))
-        centre[:, 2] = self.z
+        # The mean of the nodes: about any other point a rigid motion would not look rigid.
+        centre = self._mean(self._X)
         rotation = np.broadcast_to(np.eye(3), (len(self.z), 3, 3))
         return Pose(centre, rotation, self._X - self._nodal(centre), self._X)
 

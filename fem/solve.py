@@ -145,10 +145,11 @@ def solve(
             at_rest = Equilibrium(0.0, chart.rest(), rest, np.nan, 0.0, True, 0)
             states = [_state(mesh, at_rest, 0.0)]
             path = Path(system, chart, options)
-            before, work = at_rest, 0.0
+            known: list[Equilibrium] = []
+            work = 0.0
             for found in path.follow(asked):
-                work += work_between(before, found)
-                before = found
+                known = [*known[-3:], found]
+                work += last_work(known)
                 if progress is not None:
                     progress(found.pressure)
                 if found.asked:
@@ -166,18 +167,28 @@ def solve(
     )
 
 
-def work_between(before: Equilibrium, after: Equilibrium) -> float:
-    """Work of the pressure between two states, N mm.
+def last_work(known: Sequence[Equilibrium]) -> float:
+    """Work of the pressure on the way to the last of up to four states, N mm.
 
-    V is taken as the cubic in p that dV/dp at both ends gives. From rest it is straight: all that
-    is not, the threads' tightening, happens at hardly any pressure.
+    V(p) is taken as the polynomial through the states. From rest it is straight: all that is not,
+    the threads' tightening, happens at hardly any pressure. On the second way it is the cubic
+    that dV/dp at both ends gives.
     """
-    if before.pressure == 0.0:
+    after = known[-1]
+    if len(known) == 1:
         return 0.5 * after.compliance * after.pressure**2
-    rise = after.pressure - before.pressure
+    before = known[-2]
+    rise, p1 = after.pressure - before.pressure, after.pressure
     V0, V1 = before.forces.volume, after.forces.volume
-    area = 0.5 * (V0 + V1) * rise + rise**2 / 12.0 * (before.compliance - after.compliance)
-    return after.pressure * V1 - before.pressure * V0 - area
+    if len(known) == 2:
+        area = 0.5 * (V0 + V1) * rise + rise**2 / 12.0 * (before.compliance - after.compliance)
+        return p1 * V1 - before.pressure * V0 - area
+    # In t = (p - p1) / rise, which runs from -1 to 0 on this way.
+    t = np.array([(e.pressure - p1) / rise for e in known])
+    V = np.array([e.forces.volume - V1 for e in known])
+    whole = np.polynomial.Polynomial.fit(t, V, len(known) - 1).integ()
+    area = float(whole(0.0) - whole(-1.0)) * rise
+    return before.pressure * (V1 - V0) - area
 
 
 def _state(mesh: Mesh, found: Equilibrium, work: float) -> State:
