@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fem.actuator import Actuator, Window, chain
-from fem.element import face_nodes, natural_nodes
+from fem.element import face_nodes, natural_nodes, shape
 from fem.errors import BadGeometry, NotConverged
 from fem.gauze import THREAD_EA, Gauze
 from fem.mesh import Mesh
@@ -290,36 +290,30 @@ def _shape(mesh: Mesh, state: State, place: _Place) -> Shape:
     layer = np.clip(np.searchsorted(z, inside, side="right") - 1, 0, mesh.layers - 1)
     t = (inside - z[layer]) / mesh.heights[layer]
     end = state.shape.rotation[-1] @ [0.0, 0.0, 1.0]
-    lines = []
-    for far in (False, True):
-        first, middle, last = _edge(mesh, state.x, layer, far)
-        N = np.stack([(1.0 - t) * (1.0 - 2.0 * t), 4.0 * t * (1.0 - t), t * (2.0 * t - 1.0)])
-        if middle is None:
-            N, middle = np.stack([1.0 - t, 0.0 * t, t]), first
-        line = np.einsum("cn,cnj->nj", N, np.stack([first, middle, last]))
-        lines.append(place(line + (along - inside)[:, None] * end))
-    facing, far_line = lines
-    return Shape(along, facing, 0.5 * (facing + far_line), far_line)
+    nodes = mesh.outer + (layer * (mesh.ring + mesh.mid))[:, None, None]
+    facing, far = (
+        place(
+            np.einsum("sn,snj->sj", N, state.x.reshape(-1, 3)[nodes[:, k]])
+            + (along - inside)[:, None] * end
+        )
+        for k, N in (_on_bricks(mesh, 2.0 * t - 1.0, phi) for phi in (-0.5 * np.pi, 0.5 * np.pi))
+    )
+    return Shape(along, facing, 0.5 * (facing + far), far)
 
 
-def _edge(
-    mesh: Mesh, x: FloatArray, layer: np.ndarray[tuple[int], np.dtype[np.int64]], far: bool
-) -> tuple[FloatArray, FloatArray | None, FloatArray]:
-    """Nodes of the brick edges along the object-facing line, or the far one, for some layers.
+def _on_bricks(mesh: Mesh, zeta: FloatArray, phi: float) -> tuple[int, FloatArray]:
+    """Brick around that has the surface line at phi (rad, from 270 deg on), and its weights there.
 
     Returns
     -------
-    first, middle, last : (N, 3) mm
-        ``middle`` is None for bricks without mid-side nodes.
+    k : int
+    N : (S, n)
+        Shape functions of the brick's outer face, one row for each natural coordinate zeta.
     """
-    k, eta = (mesh.around - 1, 1) if mesh.half and far else (mesh.around // 2 if far else 0, -1)
-    rows = [tuple(row) for row in natural_nodes(mesh.size.kind)[-face_nodes(mesh.size.kind) :, 1:]]
-    nodes = mesh.outer[k]
-    flat = x.reshape(-1, 3)
-    start = layer * (mesh.ring + mesh.mid)
-
-    def at(zeta: int) -> FloatArray:
-        found: FloatArray = flat[start + nodes[rows.index((eta, zeta))]]
-        return found
-
-    return at(-1), at(0) if (eta, 0) in rows else None, at(1)
+    k = int(np.clip(np.searchsorted(mesh.columns, phi + 1e-9) - 1, 0, mesh.around - 1))
+    low, high = mesh.columns[k : k + 2]
+    eta = np.clip(2.0 * (phi - low) / (high - low) - 1.0, -1.0, 1.0)
+    kind = mesh.size.kind
+    face = natural_nodes(kind)[-face_nodes(kind) :, 1:]
+    N, _ = shape(face, np.column_stack([np.full(len(zeta), eta), zeta]))
+    return k, N

@@ -116,7 +116,7 @@ def test_lines_pass_through_the_nodes_and_bend_within_the_bricks(run: verify.Run
     place = verify._Place(POSES[0][0], 1.0, 10.0)
     for line, nodes in ((shape.facing, state.shape.facing), (shape.far, state.shape.far)):
         at = [np.interp(mesh.z, shape.along, line[:, k]) for k in (0, 1)]
-        np.testing.assert_allclose(np.stack(at, axis=1), place(nodes), atol=0.02)
+        np.testing.assert_allclose(np.stack(at, axis=1), place(nodes), atol=0.06)
     # The plug, rigid, goes on from the last ring as that one is turned.
     end = state.shape.rotation[-1] @ [0.0, 0.0, 1.0]
     tip = place(state.shape.facing[-1:] + end * mesh.actuator.plug)

@@ -125,8 +125,9 @@ def _swelling(mesh: Mesh, X: FloatArray, x: FloatArray) -> FloatArray:
     """Growth of every node's distance from the centre of its section: (N,) mm."""
     size = np.tile([mesh.ring, mesh.mid], mesh.layers + 1)[:-1]
     section = np.repeat(np.arange(len(size)), size)[: mesh.nodes]
-    weight = np.where(_on_plane(mesh), 0.5, 1.0)  # the mirror image has the other half
-    total = np.maximum(np.bincount(section, weight), 0.5)  # no mid nodes in 8-node bricks
+    weight = np.tile(_width(mesh), mesh.layers + 1)[: mesh.nodes]
+    total = np.bincount(section, weight)
+    total[total == 0.0] = 1.0  # 8-node bricks have no mid nodes
     reach = []
     for nodes in (X, x):
         sums = [np.bincount(section, weight * nodes[:, k]) / total for k in range(3)]
@@ -136,6 +137,25 @@ def _swelling(mesh: Mesh, X: FloatArray, x: FloatArray) -> FloatArray:
         reach.append(np.linalg.norm(nodes - centre[section], axis=1))
     growth: FloatArray = reach[1] - reach[0]
     return growth
+
+
+def _width(mesh: Mesh) -> FloatArray:
+    """Share of the circumference that each node of a ring, then of a mid section, stands for."""
+    widths = []
+    for nodes in (mesh.X[0, : mesh.ring], mesh.X[0, mesh.ring :]):
+        phi = np.round(np.arctan2(nodes[:, 1], nodes[:, 0]), 6)
+        places, which, count = np.unique(phi, return_inverse=True, return_counts=True)
+        if mesh.half:
+            gaps = np.diff(places, prepend=places[:1], append=places[-1:])
+        else:
+            gaps = np.diff(places, prepend=places[-1:] - 2.0 * np.pi)
+            gaps = np.append(gaps, gaps[:1])
+        width = (0.5 * (gaps[1:] + gaps[:-1]) / count)[which]
+        # What is left of the first moment goes, so that a tube at rest has its centre on the axis.
+        across = nodes[:, 1:2] if mesh.half else nodes[:, :2]
+        moment = (across * width[:, None]).T @ across
+        widths.append(width - width * (across @ np.linalg.lstsq(moment, width @ across)[0]))
+    return np.concatenate(widths)
 
 
 def _array(name: str, values: NDArray[np.generic]) -> str:
