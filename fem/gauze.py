@@ -53,6 +53,11 @@ class Gauze:
             raise ValueError("a gauze needs 0 <= allowance < pi and a pitch above 0, or none")
 
 
+# As the paper modelled it: bars every 6 deg that resist compression, those at both ends of a
+# sector uncut.
+PAPER_GAUZE = Gauze(slack=1.0, allowance=0.0, pitch=float(np.radians(6.0) * 10.0))
+
+
 @dataclass(frozen=True)
 class Threads:
     """Thread points on faces.

@@ -24,6 +24,7 @@ FloatArray = NDArray[np.float64]
 
 _ORDER = 3  # of the extrapolation
 _SHRINK, _GROW = 0.3, 2.5
+_FLAT = 2e-3  # the states around a maximum lie within this share of its pressure
 _LIMIT_STEPS = 60  # by volume, before it gives up looking for a maximum
 
 
@@ -40,6 +41,8 @@ class Options:
     first, smallest : float
         First step, and the step below which something must be in the way, over the rubber's
         shear modulus.
+    stable : bool
+        Whether a state that is not stable under pressure ends the path.
     beyond : float
         How much further to follow the path by volume past a limit point, as a share of the
         volume there.
@@ -50,6 +53,7 @@ class Options:
     aim: float = 0.15
     first: float = 0.02
     smallest: float = 2e-3
+    stable: bool = True
     beyond: float = 0.0
 
 
@@ -156,8 +160,13 @@ class Path:
         pose, pressure = self._predict(pressure, volume)
         done = correct(self._system, self._chart, pose, pressure, tolerance, volume)
         outcome: str = done.outcome
-        if outcome == "converged" and volume is None and done.negative:
-            outcome = "unstable"
+        negative = done.negative
+        if outcome == "converged" and negative:
+            # Counted on the way there: what counts is the state itself.
+            _, inverse = self._system.factor(done.pose.x, done.pressure)
+            negative = inverse.negative if inverse is not None else negative
+            if negative and volume is None and self._options.stable:
+                outcome = "unstable"
         self.history.append(
             Attempt(done.pressure, done.iterations, done.factored, done.residual, outcome)
         )
@@ -169,7 +178,7 @@ class Path:
             self._flow = self._chart.increment(done.pose, self._system.expand(x, done.flow))
         compliance = float(done.forces.volume_gradient @ done.flow)
         found = Equilibrium(
-            done.pressure, done.pose, done.forces, compliance, done.residual, asked, done.negative
+            done.pressure, done.pose, done.forces, compliance, done.residual, asked, negative
         )
         self._known = [*self._known[-_ORDER:], found]
         return found, done.first
@@ -222,6 +231,10 @@ class Path:
                 yield found
                 if volume >= end:
                     return
+            elif found.pressure < before.pressure and _spread(self._known) > _FLAT:
+                self._known.pop()  # too far beyond the maximum to say where it is
+                grow *= 0.4
+                continue
             elif found.pressure < before.pressure:
                 self.critical = Critical("limit point", _maximum(self._known))
                 end = before.forces.volume * (1.0 + self._options.beyond)
@@ -266,6 +279,12 @@ def lagrange(places: FloatArray, at: float) -> FloatArray:
 def _rate(share: float) -> float:
     """How much longer the next step may be when the prediction was off by 1 / share of the aim."""
     return float(np.clip(min(share, 1e9) ** (2.0 / 3.0), _SHRINK, _GROW))
+
+
+def _spread(known: Sequence[Equilibrium]) -> float:
+    """How much the pressures of the last three states differ, over the highest."""
+    pressures = [e.pressure for e in known[-3:]]
+    return (max(pressures) - min(pressures)) / max(pressures)
 
 
 def _maximum(known: Sequence[Equilibrium]) -> float:

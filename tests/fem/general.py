@@ -94,7 +94,7 @@ class Model:
             X = mesh.X[nodes]
             alike.setdefault(np.round(X - X[0], 12).tobytes(), []).append(e)
         self.groups: list[tuple[Reference, IntArray]] = [
-            (reference(mesh.kind, mesh.X[mesh.bricks[found[0]]], orders), np.array(found))
+            (reference(mesh.kind, mesh.X[mesh.bricks[found[:1]]], orders), np.array(found))
             for found in alike.values()
         ]
 
@@ -107,23 +107,23 @@ class Model:
         energy, force = 0.0, np.zeros_like(x)
         full = np.empty((E, n, 3, n, 3)) if tangent else None
         for ref, members in self.groups:
-            S = np.empty((6, len(members), n * n)) if tangent else None
+            S = np.empty((6, 1, len(members), n * n)) if tangent else None
             state = solid.respond(
                 self.rubber,
                 ref,
                 np.full(len(members), 2.0),
-                np.ascontiguousarray(x[bricks[members]].transpose(2, 1, 0)),
+                np.ascontiguousarray(x[bricks[members]].transpose(2, 1, 0)[:, None]),
                 self.work,
                 S,
                 mean_dilatation=self.mean_dilatation,
             )
             if not state.least_J > 0.0:
                 raise FloatingPointError("a brick is turned inside out")
-            energy += float(state.energy.sum())
-            np.add.at(force, bricks[members], state.force.transpose(2, 1, 0))
+            energy += state.energy
+            np.add.at(force, bricks[members], state.force[:, 0].transpose(2, 1, 0))
             if full is not None and S is not None:
                 for m, (i, k) in enumerate(PAIRS):
-                    block = S[m].reshape(-1, n, n)
+                    block = S[m, 0].reshape(-1, n, n)
                     full[members, :, i, :, k] = block
                     full[members, :, k, :, i] = block.transpose(0, 2, 1)
         if full is None:

@@ -220,7 +220,7 @@ def test_single_rings_are_counted() -> None:
 
 
 def test_weights_do_not_hang_on_the_mesh() -> None:
-    fine = MeshSize(around=11, edge=0.7, window=1.3, wrapped=3.0, end=1.1)
+    fine = MeshSize(around=11, beside=0.0, edge=0.7, window=1.3, wrapped=3.0, end=1.1)
     window = Window(10.0, 5.0, np.radians(70.0))
     actuator = Actuator(22.0, (window,))
     totals = [make_mesh(actuator, size).axial.weight.sum() for size in (COARSE, fine)]

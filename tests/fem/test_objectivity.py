@@ -33,17 +33,17 @@ def full(stiffness: FloatArray, n: int) -> FloatArray:
 def brick(kind: Kind, x: FloatArray, mean: bool) -> tuple[float, FloatArray, FloatArray]:
     X = natural_nodes(kind).astype(float) * [1.0, 1.5, 1.0]
     n = len(X)
-    S = np.empty((6, 1, n * n))
+    S = np.empty((6, 1, 1, n * n))
     state = solid.respond(
         RUBBER,
-        reference(kind, X, (2, 3, 2)),
+        reference(kind, X[None], (2, 3, 2)),
         np.array([2.0]),
-        np.ascontiguousarray(x.T[..., None]),
+        np.ascontiguousarray(x.T[:, None, :, None]),
         solid.Workspace(),
         S,
         mean_dilatation=mean,
     )
-    return float(state.energy[0]), state.force[..., 0].T, full(S[:, 0], n)
+    return state.energy, state.force[:, 0, :, 0].T, full(S[:, 0, 0], n)
 
 
 CURES: list[tuple[Kind, bool]] = [("hex20", False), ("hex8", True), ("hex8", False)]
@@ -93,10 +93,10 @@ def test_height_stretches_the_reference() -> None:
     x = tall + np.random.default_rng(5).uniform(-0.1, 0.1, X.shape)
     found = []
     for nodes, height in ((X, 5.0), (tall, 2.0)):
-        S = np.empty((6, 1, 400))
+        S = np.empty((6, 1, 1, 400))
         state = solid.respond(
-            RUBBER, reference("hex20", nodes, (2, 3, 2)), np.array([height]),
-            np.ascontiguousarray(x.T[..., None]), solid.Workspace(), S,
+            RUBBER, reference("hex20", nodes[None], (2, 3, 2)), np.array([height]),
+            np.ascontiguousarray(x.T[:, None, :, None]), solid.Workspace(), S,
         )  # fmt: skip
         found.append((state.energy, state.force, S))
     for by_height, by_nodes in zip(*found, strict=True):

@@ -103,7 +103,7 @@ def test_internal_forces_are_the_gradient_of_the_energy(center: float, size: Mes
 
 @pytest.mark.parametrize(("around", "bound"), [(8, 5e-5), (16, 4e-6)])
 def test_volume_at_rest_is_the_cylinders(around: int, bound: float) -> None:
-    system = System(mesh_of(270.0, MeshSize(around=around)), 1)
+    system = System(mesh_of(270.0, MeshSize(around=around, beside=0.0)), 1)
     volume = 2.0 * system.forces(system.mesh.X).volume
     assert abs(volume / (np.pi * 8.0**2 * 21.0) - 1.0) < bound  # falls with the angle's 4th power
     # Exactly: triangles and segments of parabolas.
@@ -133,7 +133,9 @@ def test_volume_with_the_plug_moved(center: float) -> None:
 @pytest.mark.parametrize("center", [270.0, 200.0])
 def test_volume_of_a_bent_tube_is_pappus(center: float) -> None:
     # Sections turned about an axis across the tube: area times the way of their middle.
-    system = System(mesh_of(center, MeshSize(around=6, end=1.0, wrapped=1.0, window=1.0)), 1)
+    system = System(
+        mesh_of(center, MeshSize(around=6, beside=0.0, end=1.0, wrapped=1.0, window=1.0)), 1
+    )
     mesh, radius = system.mesh, 40.0
     rest = system.forces(mesh.X).volume
     turn = mesh.X[..., 2] / radius

@@ -150,7 +150,7 @@ def dense(system: System, pose: Pose, pressure: float) -> FloatArray:
     return 0.5 * (K + K.T)
 
 
-TINY = MeshSize(around=2, edge=4.0, window=4.0, wrapped=8.0, end=8.0)
+TINY = MeshSize(around=2, beside=0.0, growth=2.0, edge=4.0, window=4.0, wrapped=8.0, end=8.0)
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,8 +15,8 @@ from fem.sections import Chart, Pose
 
 FloatArray = NDArray[np.float64]
 
-COARSE = MeshSize(around=3, edge=2.0, window=2.5, wrapped=8.0, end=4.0)
-COARSE8 = MeshSize(4, 2.0, 2.5, 8.0, 4.0, "hex8", 2, (2, 2, 2), mean_dilatation=True)
+COARSE = MeshSize(around=3, beside=0.0, edge=2.0, growth=2.0)
+COARSE8 = replace(COARSE, around=4, kind="hex8", through=2, orders=(2, 2, 2), mean_dilatation=True)
 
 
 def tube(center: float = 270.0, gauze: Gauze | None = None) -> Actuator:

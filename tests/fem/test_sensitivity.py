@@ -1,0 +1,97 @@
+"""Direct differentiation against differences of whole solutions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fem.actuator import Actuator, Window, chain
+from fem.errors import FemError
+from fem.meshsize import MeshSize
+from fem.sensitivity import Rate, Sensitivities, sensitivities
+from fem.solve import State, solve
+
+# Even bricks: the mesh itself must not follow the sectors, or it would change with alpha.
+SIZE = MeshSize(around=4, beside=0.0, edge=1.0, growth=2.0)
+PRESSURE = 0.1
+
+
+def two(center: tuple[float, float]) -> Actuator:
+    return chain(
+        12.0, [14.2, 12.1], [6.3, 5.7], np.radians([100.0, 120.0]), np.radians(center), end=2.0
+    )
+
+
+def widened(actuator: Actuator, number: int, by: float) -> Actuator:
+    windows = list(actuator.windows)
+    windows[number] = replace(windows[number], alpha=windows[number].alpha + by)
+    return replace(actuator, windows=tuple(windows))
+
+
+def lengthened(actuator: Actuator, segment: int, by: float) -> Actuator:
+    """Segments in order: root, first cut, wrapped, second cut, rest."""
+    lengths = np.diff([0.0, *[e for w in actuator.windows for e in (w.start, w.end)]])
+    lengths = np.append(lengths, actuator.length - lengths.sum())
+    lengths[segment] += by
+    edges = np.concatenate([[0.0], np.cumsum(lengths)])
+    windows = tuple(
+        replace(w, centre=0.5 * (edges[2 * k + 1] + edges[2 * k + 2]), openF=lengths[2 * k + 1])
+        for k, w in enumerate(actuator.windows)
+    )
+    return Actuator(float(edges[-1]), windows)
+
+
+@pytest.mark.parametrize("center", [(270.0, 90.0), (250.0, 30.0)])
+def test_against_differences(center: tuple[float, float]) -> None:
+    actuator = two(center)
+    run = solve(actuator, [PRESSURE], SIZE)
+    found = sensitivities(run.mesh, run.states[-1].x, PRESSURE)
+
+    def state(changed: Actuator, pressure: float = PRESSURE) -> State:
+        other = solve(changed, [pressure], SIZE)
+        assert other.mesh.layers == run.mesh.layers
+        return other.states[-1]
+
+    def check(rate: Rate, after: State, before: State, step: float) -> None:
+        theta = (after.theta - before.theta) / (2.0 * step)
+        line = (after.shape.facing - before.shape.facing) / (2.0 * step)
+        places = (after.shape.z - before.shape.z) / (2.0 * step)
+        volume = (after.volume - before.volume) / (2.0 * step)
+        np.testing.assert_allclose(rate.theta, theta, rtol=1e-3, atol=1e-3 * np.abs(theta).max())
+        np.testing.assert_allclose(rate.facing, line, atol=1e-3 * np.abs(line).max())
+        np.testing.assert_allclose(rate.z, places, atol=1e-6)
+        assert rate.volume == pytest.approx(volume, rel=1e-3)
+
+    h = 1e-4
+    check(found.pressure, state(actuator, PRESSURE + h), state(actuator, PRESSURE - h), h)
+    changes: list[tuple[Rate, Callable[[float], Actuator]]] = [
+        (found.alpha[1], lambda by: widened(actuator, 1, by)),
+        (found.openF[0], lambda by: lengthened(actuator, 1, by)),
+        (found.wrapped[1], lambda by: lengthened(actuator, 2, by)),
+    ]
+    for rate, change in changes:
+        check(rate, state(change(1e-3)), state(change(-1e-3)), 1e-3)
+
+
+def test_signs() -> None:
+    run = solve(two((270.0, 90.0)), [PRESSURE], SIZE)
+    found: Sensitivities = sensitivities(run.mesh, run.states[-1].x, PRESSURE)
+    toward, away = found.pressure.theta
+    assert toward > 0.0 > away  # more pressure, more angle, each its own way
+    assert found.alpha[0].theta[0] < 0.0  # more uncut gauze, less angle
+    assert found.openF[0].theta[0] > 0.0  # a longer cut, more angle
+    assert len(found.wrapped) == 3
+
+
+def test_positions_off_equilibrium_are_refused() -> None:
+    run = solve(two((270.0, 90.0)), [PRESSURE], SIZE)
+    with pytest.raises(FemError, match="equilibrium"):
+        sensitivities(run.mesh, run.states[-1].x, 1.1 * PRESSURE)
+
+
+def test_a_window_of_its_own() -> None:
+    w = Window(10.0, 4.0, 1.0)
+    assert (w.start, w.end, w.away) == (8.0, 12.0, False)
