@@ -160,11 +160,12 @@ class Path:
         pose, pressure = self._predict(pressure, volume)
         done = correct(self._system, self._chart, pose, pressure, tolerance, volume)
         outcome: str = done.outcome
-        negative = done.negative
+        negative, flow = done.negative, done.flow
         if outcome == "converged" and negative:
             # Counted on the way there: what counts is the state itself.
-            _, inverse = self._system.factor(done.pose.x, done.pressure)
-            negative = inverse.negative if inverse is not None else negative
+            forces, inverse = self._system.factor(done.pose.x, done.pressure)
+            if inverse is not None:
+                negative, flow = inverse.negative, inverse.solve(forces.volume_gradient)
             if negative and volume is None and self._options.stable:
                 outcome = "unstable"
         self.history.append(
@@ -175,8 +176,8 @@ class Path:
             return None, done.first
         if not self._known:
             x = done.pose.x
-            self._flow = self._chart.increment(done.pose, self._system.expand(x, done.flow))
-        compliance = float(done.forces.volume_gradient @ done.flow)
+            self._flow = self._chart.increment(done.pose, self._system.expand(x, flow))
+        compliance = float(done.forces.volume_gradient @ flow)
         found = Equilibrium(
             done.pressure, done.pose, done.forces, compliance, done.residual, asked, negative
         )
@@ -231,11 +232,11 @@ class Path:
                 yield found
                 if volume >= end:
                     return
-            elif found.pressure < before.pressure and _spread(self._known) > _FLAT:
+            elif found.compliance < 0.0 and _spread(self._known) > _FLAT:
                 self._known.pop()  # too far beyond the maximum to say where it is
                 grow *= 0.4
                 continue
-            elif found.pressure < before.pressure:
+            elif found.compliance < 0.0:
                 self.critical = Critical("limit point", _maximum(self._known))
                 end = before.forces.volume * (1.0 + self._options.beyond)
                 if volume >= end:
