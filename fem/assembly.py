@@ -23,6 +23,8 @@ from fem.plug import Plug
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+_FEW = 4  # right sides up to which a second thread only gets in the way
+
 
 @dataclass(frozen=True)
 class Forces:
@@ -110,9 +112,10 @@ class System:
             yield from part.pivots.values()
         yield self._last
 
-    def _both(self, work: Callable[[Part], object]) -> None:
+    def _both(self, work: Callable[[Part], object], *, alone: bool = False) -> None:
+        """Do the work of both parts, at the same time unless it is too small for that."""
         root, tip = self._parts
-        if self._pool is None:
+        if self._pool is None or alone:
             work(root)
             work(tip)
             return
@@ -124,7 +127,7 @@ class System:
 
     def forces(self, x: FloatArray) -> Forces:
         """Give the forces at nodal positions x (layers + 1, ring + mid, 3), mm."""
-        self._both(lambda part: part.evaluate(x, 0.0, None))
+        self._both(lambda part: part.evaluate(x, 0.0, None), alone=True)
         return self._gather(x)
 
     def factor(self, x: FloatArray, pressure: float) -> tuple[Forces, Inverse | None]:
@@ -226,12 +229,13 @@ class System:
         def forward(part: Part) -> None:
             carry[part] = part.forward(rings, mids, plug)
 
-        self._both(forward)
+        few = len(out) <= _FEW
+        self._both(forward, alone=few)
         middle = np.zeros((len(out), 0))
         if self.middle > 0:
             middle = rings[:, self.middle - 1] - sum(carry.values())
             self._last.forward(middle)
             self._last.backward(middle)
             rings[:, self.middle - 1] = middle
-        self._both(lambda part: part.backward(rings, mids, plug, middle))
+        self._both(lambda part: part.backward(rings, mids, plug, middle), alone=few)
         return out

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 
 import numpy as np
@@ -31,6 +32,8 @@ class Part:
         Reduced couplings to the ring ahead.
     next : (far, far)
         What has been added to the next pivot, its upper triangle.
+    stiffness : (through, 6, around, column)
+        Of the bricks, for the pairs (i, k), layers one after another.
     internal, gradient : (layers + 1, ring + mid, 3)
         This part's nodal forces: of the stored energy (N) and of a unit pressure (mm^2).
     energy, volume, least_J : float
@@ -54,7 +57,11 @@ class Part:
         self.patterns = dict.fromkeys(self.order, plain)
         if from_root and layers:
             self.patterns[0] = pattern(clamped=True)
-        self.scratch = {p: np.zeros(p.size) for p in set(self.patterns.values())}
+        self.scratch = {p: np.empty(len(p.first)) for p in set(self.patterns.values())}
+        # As many zeros behind the stiffness as the last layer's view reaches beyond it.
+        shape = (mesh.size.through, 6, mesh.around, self.column)
+        self.entries = np.zeros(math.prod(shape) + self.column + 1)
+        self.stiffness = self.entries[: math.prod(shape)].reshape(shape)
         sizes = {
             layer: p.block + (unknowns.plug - p.behind if self._is_plug(layer) else 0)
             for layer, p in self.patterns.items()
@@ -85,18 +92,13 @@ class Part:
                 for layer in chunk if self.from_root else chunk[::-1]:
                     self._eliminate(layer, layer - chunk.start, x, pressure, plug)
 
-    def _stiffness(self) -> FloatArray:
-        """Return the bricks' stiffness (through, 6, around, column), layers one after another."""
-        mesh = self.mesh
-        return self.work.get("stiffness", (mesh.size.through, 6, mesh.around, self.column))
-
     def _add_forces(self, chunk: range, x: FloatArray, pressure: float, tangent: bool) -> None:
         mesh = self.mesh
         c, n, m, L = mesh.around, mesh.bricks.shape[1], mesh.outer.shape[1], len(chunk)
         first = np.asarray(chunk) * (mesh.ring + mesh.mid)
         flat = x.reshape(-1, 3)
         internal, gradient = self.internal.reshape(-1, 3), self.gradient.reshape(-1, 3)
-        stiffness = self._stiffness()[..., : L * n * n]
+        stiffness = self.stiffness[..., : L * n * n]
         for deep in range(mesh.size.through):
             nodes = mesh.bricks[deep * c : (deep + 1) * c, :, None] + first  # (c, n, L)
             state = solid.respond(
@@ -139,15 +141,11 @@ class Part:
     ) -> None:
         pattern, pivot, coupling = self.patterns[layer], self.pivots[layer], self.couplings[layer]
         b, r = pattern.block, pattern.far
-        source = self._stiffness().reshape(-1)[place * self.mesh.bricks.shape[1] ** 2 :]
+        source = self.entries[place * self.mesh.bricks.shape[1] ** 2 :]
         step = self.scratch[pattern]
-        for rank, (at, to) in enumerate(zip(pattern.source, pattern.target, strict=True)):
-            values = self.work.get("entries", at.shape)
-            np.take(source, at, out=values, mode="clip")  # clip: without a check of every index
-            if rank == 0:
-                step[to] = values
-            else:
-                step[to] += values
+        np.take(source, pattern.first, out=step, mode="clip")  # clip: no check of every index
+        for at, to in zip(pattern.source, pattern.target, strict=True):
+            step[to] += source[at]
         own = step[: b * b].reshape(b, b)
         own_coupling = step[b * b : b * (b + r)].reshape(b, r)
         added = self.next[: pattern.behind, : pattern.behind]

@@ -66,9 +66,12 @@ class Pattern:
         Sizes; ``behind`` are the unknowns of the ring behind (0 where it is clamped).
     block_nodes, far_nodes : int arrays
         The unknowns' places among the coordinates of the layer's nodes.
+    first : (size,) int
+        The first entry of the layer's stiffness that goes to each place; where none does, one
+        past the stiffness's end, which holds zero.
     source, target : tuples of int arrays
-        Entry ``source[k][n]`` of the layer's stiffness goes to ``target[k][n]``; no target
-        stands twice in one array.
+        Where several bricks share a place, the further entries: ``source[k][n]`` adds to
+        ``target[k][n]``; no target stands twice in one array.
     """
 
     block: int
@@ -76,13 +79,9 @@ class Pattern:
     behind: int
     block_nodes: IntArray
     far_nodes: IntArray
+    first: IntArray
     source: tuple[IntArray, ...]
     target: tuple[IntArray, ...]
-
-    @property
-    def size(self) -> int:
-        """Length of the flat array."""
-        return self.block**2 + self.block * self.far + self.far**2
 
 
 def make_pattern(
@@ -116,14 +115,17 @@ def make_pattern(
     flat = place.reshape(-1)
     numbered = np.flatnonzero(flat >= 0)
     nodes = numbered[np.argsort(flat[numbered])]
+    first = np.full(block**2 + block * far + far**2, mesh.size.through * 6 * mesh.around * column)
+    first[to[ranks[0]]] = at[ranks[0]]
     return Pattern(
         block,
         far,
         0 if clamped else len(unknowns.ring),
         nodes[:block],
         nodes[block:],
-        tuple(at[r] for r in ranks),
-        tuple(to[r] for r in ranks),
+        first,
+        tuple(at[r] for r in ranks[1:]),
+        tuple(to[r] for r in ranks[1:]),
     )
 
 
