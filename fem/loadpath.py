@@ -22,7 +22,7 @@ from fem.sections import Chart, Pose
 
 FloatArray = NDArray[np.float64]
 
-_ORDER = 3  # of the extrapolation
+_ORDER = 2  # of the extrapolation
 _SHRINK, _GROW = 0.3, 2.5
 _FLAT = 2e-3  # the states around a maximum lie within this share of its pressure
 _LIMIT_STEPS = 60  # by volume, before it gives up looking for a maximum

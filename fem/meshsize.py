@@ -38,7 +38,7 @@ class MeshSize:
         Take the volume change from the brick's mean: the cure that 8-node bricks need.
     """
 
-    around: int = 5
+    around: int = 4
     beside: float = float(np.radians(12.0))
     edge: float = 0.2
     window: float = 2.5
