@@ -116,6 +116,7 @@ class Path:
         self._system, self._chart, self._options = system, chart, options
         self._known: list[Equilibrium] = []
         self._careful = False
+        self._unstable = False  # whether an unstable equilibrium was found ahead
         self.history: list[Attempt] = []
         self.critical: Critical | None = None
 
@@ -168,6 +169,7 @@ class Path:
                 negative, flow = inverse.negative, inverse.solve(forces.volume_gradient)
             if negative and volume is None and self._options.stable:
                 outcome = "unstable"
+                self._unstable = True
         self.history.append(
             Attempt(done.pressure, done.iterations, done.factored, done.residual, outcome)
         )
@@ -224,8 +226,7 @@ class Path:
             if found is None:
                 grow *= 0.4
                 if grow < least:
-                    if self.critical is None:
-                        raise self._failure(blocked)
+                    self._give_up(blocked)
                     return
                 continue
             if self.critical is not None:
@@ -251,6 +252,12 @@ class Path:
             else:
                 yield found
             grow *= min(2.0, _rate(self._options.aim / first))
+        self._give_up(blocked)
+
+    def _give_up(self, blocked: float) -> None:
+        """End the path: where stability is known to be lost ahead, that is what ended it."""
+        if self.critical is None and self._unstable:
+            self.critical = Critical("bifurcation", self._known[-1].pressure)
         if self.critical is None:
             raise self._failure(blocked)
 

@@ -32,16 +32,16 @@ def test_rings_lie_on_every_window_edge(size: MeshSize) -> None:
 
 def test_heights_grow_from_the_edges_and_are_bounded() -> None:
     mesh = make_mesh(two_joints(), MeshSize(edge=0.5, window=2.5, wrapped=8.0, end=2.0, growth=2.0))
-    z, h = mesh.z, mesh.heights
+    z, h = mesh.z, mesh.heights  # stretched by a tenth at most to fill a length
     for edge in (10.0, 20.0, 35.0, 41.0):
         k = int(np.argmin(np.abs(z - edge)))
-        assert max(h[k - 1], h[k]) <= 1.1 * 0.5 + 1e-12  # stretched by a tenth at most
+        assert max(h[k - 1], h[k]) <= 1.1 * 0.5 + 1e-12
     middle = 0.5 * (z[1:] + z[:-1])
     for w in mesh.actuator.windows:
-        assert h[(middle > w.start) & (middle < w.end)].max() <= 2.5 + 1e-12
-    assert h.max() <= 8.0 + 1e-12
+        assert h[(middle > w.start) & (middle < w.end)].max() <= 1.1 * 2.5
+    assert h.max() <= 1.1 * 8.0
     assert h.max() > 2.5
-    assert h[0] <= 2.0 + 1e-12
+    assert h[0] <= 1.1 * 2.0
     ratio = h[1:] / h[:-1]
     assert ratio.max() < 2.6
     assert ratio.min() > 1.0 / 2.6
