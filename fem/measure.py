@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from fem import gauze
 from fem.element import face_nodes, natural_nodes, shape
@@ -193,6 +192,8 @@ def joint_angles(mesh: Mesh, x: FloatArray, wrapped: tuple[Sector, ...]) -> Floa
 
 def touches(mesh: Mesh, x: FloatArray) -> bool:
     """Whether the tube's surface meets itself: nodes far apart at rest that lie close now."""
+    from scipy.spatial import cKDTree  # a third of the package's import time
+
     rest = mesh.X[:, mesh.outer_ring].reshape(-1, 3)
     now = x[:, mesh.outer_ring].reshape(-1, 3)
     pairs = cKDTree(now).query_pairs(_NEAR * mesh.actuator.diameter, output_type="ndarray")
