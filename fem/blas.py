@@ -13,19 +13,21 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import scipy
 from numpy.typing import NDArray
-from scipy.linalg import cython_blas, cython_lapack
 
 FloatArray = NDArray[np.float64]
 
 
-def _function(module: Any, name: str, arguments: int) -> Callable[..., None]:
-    capsule = module.__pyx_capi__[name]
+@cache
+def _kernel(module: str, name: str, arguments: int) -> Callable[..., None]:
+    """Load a kernel at its first use: scipy.linalg takes most of the package's import time."""
+    capsule = import_module(f"scipy.linalg.{module}").__pyx_capi__[name]
     api = ctypes.pythonapi
     api.PyCapsule_GetName.restype = ctypes.c_char_p
     api.PyCapsule_GetName.argtypes = [ctypes.py_object]
@@ -35,10 +37,6 @@ def _function(module: Any, name: str, arguments: int) -> Callable[..., None]:
     return ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * arguments)(pointer)
 
 
-_dpotrf = _function(cython_lapack, "dpotrf", 5)
-_dtrsm = _function(cython_blas, "dtrsm", 11)
-_dsyrk = _function(cython_blas, "dsyrk", 10)
-_dtrsv = _function(cython_blas, "dtrsv", 8)
 _STRIDE = ctypes.c_int(1)
 _FEW = 3  # right sides up to which one at a time is quicker
 _ONE, _MINUS = ctypes.c_double(1.0), ctypes.c_double(-1.0)
@@ -54,7 +52,7 @@ def cholesky(A: FloatArray) -> bool:
         Whether A is positive definite; it is spoilt where it is not.
     """
     n, info = ctypes.c_int(len(A)), ctypes.c_int()
-    _dpotrf(b"L", _ref(n), A.ctypes.data, _ref(n), _ref(info))
+    _kernel("cython_lapack", "dpotrf", 5)(b"L", _ref(n), A.ctypes.data, _ref(n), _ref(info))
     return info.value == 0
 
 
@@ -64,7 +62,7 @@ def solve_lower(U: FloatArray, B: FloatArray) -> None:
         return
     # C order is LAPACK's transpose: B^T U^-1 with a lower triangle there.
     n, m = ctypes.c_int(B.shape[0]), ctypes.c_int(B.shape[1])
-    _dtrsm(
+    _kernel("cython_blas", "dtrsm", 11)(
         b"R", b"L", b"T", b"N", _ref(m), _ref(n), _ref(_ONE),
         U.ctypes.data, _ref(n), B.ctypes.data, _ref(m),
     )  # fmt: skip
@@ -77,12 +75,11 @@ def solve_rows(U: FloatArray, rows: FloatArray, transposed: bool) -> None:
     n, k = ctypes.c_int(rows.shape[1]), ctypes.c_int(rows.shape[0])
     side = b"T" if transposed else b"N"
     if k.value <= _FEW:
+        solve = _kernel("cython_blas", "dtrsv", 8)
         for row in rows:
-            _dtrsv(
-                b"L", side, b"N", _ref(n), U.ctypes.data, _ref(n), row.ctypes.data, _ref(_STRIDE)
-            )
+            solve(b"L", side, b"N", _ref(n), U.ctypes.data, _ref(n), row.ctypes.data, _ref(_STRIDE))
         return
-    _dtrsm(
+    _kernel("cython_blas", "dtrsm", 11)(
         b"L", b"L", side, b"N", _ref(n), _ref(k), _ref(_ONE),
         U.ctypes.data, _ref(n), rows.ctypes.data, _ref(n),
     )  # fmt: skip
@@ -93,7 +90,7 @@ def subtract_gram(C: FloatArray, B: FloatArray) -> None:
     if B.size == 0:
         return
     n, m = ctypes.c_int(B.shape[0]), ctypes.c_int(B.shape[1])
-    _dsyrk(
+    _kernel("cython_blas", "dsyrk", 10)(
         b"L", b"N", _ref(m), _ref(n), _ref(_MINUS),
         B.ctypes.data, _ref(m), _ref(_ONE), C.ctypes.data, _ref(m),
     )  # fmt: skip

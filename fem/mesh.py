@@ -238,12 +238,11 @@ def make_columns(actuator: Actuator, size: MeshSize, half: bool) -> FloatArray:
             edges.append(min(turn, 2.0 * _HALF - turn) if half else turn)
     cuts = _merged(sorted(edges), size.beside, whole)
     ends = [0.0, *cuts, whole]
-    free = widest if half or not cuts else size.beside  # a whole tube starts anywhere
     heights = [
         _graded(
             b - a,
-            size.beside if k > 0 else free,
-            size.beside if k < len(cuts) else free,
+            size.beside if k > 0 else widest,
+            size.beside if k < len(cuts) else widest,
             widest,
             growth=2.0,
         )
