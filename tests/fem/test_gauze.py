@@ -14,7 +14,8 @@ from fem import gauze
 from fem.actuator import Actuator, Window
 from fem.assembly import System
 from fem.gauze import Gauze, Threads
-from fem.mesh import Mesh, MeshSize, make_mesh
+from fem.mesh import Mesh, make_mesh
+from fem.meshsize import MeshSize
 from tests.fem.tubes import COARSE, mesh_of
 
 FloatArray = NDArray[np.float64]

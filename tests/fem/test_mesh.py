@@ -10,7 +10,8 @@ import pytest
 from fem.actuator import AWAY, TOWARD, Actuator, Window, chain
 from fem.element import natural_nodes, reference
 from fem.errors import BadGeometry, FemError
-from fem.mesh import DEFAULT_MESH, Mesh, MeshSize, make_mesh
+from fem.mesh import Mesh, make_mesh
+from fem.meshsize import DEFAULT_MESH, MeshSize
 from tests.fem.tubes import COARSE, COARSE8
 
 QUARTER = np.radians(90.0)

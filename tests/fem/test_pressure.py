@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from fem.assembly import System
-from fem.mesh import MeshSize
+from fem.meshsize import MeshSize
 from fem.pressure import Cap, face_volumes, skew
 from fem.sections import Chart, best_rotation, rotation_matrix
 from tests.fem.general import IntArray, enclosed, grid

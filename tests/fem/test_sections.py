@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from fem.mesh import MeshSize
+from fem.meshsize import MeshSize
 from fem.pressure import skew
 from fem.sections import Chart, Pose, rotation_matrix, rotation_vector
 from tests.fem.tubes import COARSE, COARSE8, mesh_of

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from fem import blas
 from fem.assembly import Inverse, System
 from fem.gauze import Gauze
-from fem.mesh import MeshSize
+from fem.meshsize import MeshSize
 from fem.pivot import Pivot
 from fem.sections import Chart, Pose
 from tests.fem.tubes import COARSE, COARSE8, bent, mesh_of, shifted

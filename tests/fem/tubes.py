@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from fem.actuator import Actuator, Window
 from fem.assembly import System
 from fem.gauze import Gauze
-from fem.mesh import Mesh, MeshSize, make_mesh
+from fem.mesh import Mesh, make_mesh
+from fem.meshsize import MeshSize
 from fem.sections import Chart, Pose
 
 FloatArray = NDArray[np.float64]
