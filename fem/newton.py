@@ -15,7 +15,8 @@ from fem.slack import Switching
 FloatArray = NDArray[np.float64]
 Outcome = Literal["converged", "residual", "inverted"]
 
-_MOST = 10  # factorisations after which it gives up
+_MOST = 10  # factorisations after which it gives up,
+_PATIENT, _NEAR = 30, 1e-2  # or this many with the residual so near
 _HOPELESS = 1e6  # so does it when the residual has grown this much
 _DAMPINGS = 4
 
@@ -80,7 +81,7 @@ def correct(
     first = residual = np.inf
     flow, negative = np.zeros(system.unknowns.count), 0
     factored = iterations = 0
-    while factored < _MOST:
+    while factored < (_PATIENT if residual < _NEAR else _MOST):
         forces, inverse = system.factor(pose.x, pressure)
         factored += 1
         if inverse is None:
