@@ -14,7 +14,7 @@ from fem import gauze
 from fem.element import face_nodes, natural_nodes, shape
 from fem.mesh import Mesh
 from fem.meshsize import start_angle
-from fem.sections import rotation_matrix, rotation_vector
+from fem.sections import best_rotations, rotation_matrix, rotation_vector
 
 FloatArray = NDArray[np.float64]
 
@@ -111,16 +111,7 @@ def lines(mesh: Mesh, x: FloatArray) -> Shape:
 
 def rotations(mesh: Mesh, x: FloatArray) -> FloatArray:
     """Rotation of every ring from rest that fits its nodes best: (layers + 1, 3, 3)."""
-    rest, now = mesh.X[:, : mesh.ring], x[:, : mesh.ring]
-    if mesh.half:
-        mirror = np.array([-1.0, 1.0, 1.0])
-        rest, now = (np.concatenate([v, v * mirror], axis=1) for v in (rest, now))
-    rest = rest - rest.mean(axis=1, keepdims=True)
-    now = now - now.mean(axis=1, keepdims=True)
-    U, _, Vt = np.linalg.svd(np.swapaxes(now, 1, 2) @ rest)
-    U[:, :, 2] *= (np.linalg.det(U) * np.linalg.det(Vt))[:, None]
-    turned: FloatArray = U @ Vt
-    return turned
+    return best_rotations(mesh.X[:, : mesh.ring], x[:, : mesh.ring], mesh.half)
 
 
 def surface_weights(mesh: Mesh, phi: float) -> tuple[NDArray[np.int64], FloatArray, float]:

@@ -27,6 +27,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 _GIVE = 0.1  # how much sizes may be stretched to fill a length
+_SHRINK = 0.7  # of a layer's height: the most that a changed length takes off
 _HALF = np.pi
 
 
@@ -109,8 +110,17 @@ class Mesh:
         return self.layers * len(self.bricks)
 
 
-def make_mesh(actuator: Actuator, size: MeshSize = DEFAULT_MESH, whole: bool = False) -> Mesh:
-    """Mesh an actuator: half of it where all sectors lie in one plane, unless ``whole``."""
+def make_mesh(
+    actuator: Actuator,
+    size: MeshSize = DEFAULT_MESH,
+    whole: bool = False,
+    like: Mesh | None = None,
+) -> Mesh:
+    """Mesh an actuator: half of it where all sectors lie in one plane, unless ``whole``.
+
+    With the layers of another mesh (``like``), stretched, where one is given; its
+    actuator must have as many windows.
+    """
     half = actuator.in_plane and not whole
     columns = make_columns(actuator, size, half)
     around = len(columns) - 1
@@ -118,7 +128,7 @@ def make_mesh(actuator: Actuator, size: MeshSize = DEFAULT_MESH, whole: bool = F
     bricks = _bricks(places, size, around)
     m = face_nodes(size.kind)
     ring_at, mid_at = _xy(actuator, places.ring), _xy(actuator, places.mid)
-    z, segment = _stations(actuator, size)
+    z, segment = _stations(actuator, size) if like is None else _stretched(like, actuator)
     return Mesh(
         actuator=actuator,
         size=size,
@@ -145,21 +155,33 @@ def make_mesh(actuator: Actuator, size: MeshSize = DEFAULT_MESH, whole: bool = F
 
 
 def remesh(mesh: Mesh, actuator: Actuator) -> Mesh:
-    """Mesh a changed actuator with the same layers, stretched in proportion.
+    """Mesh a changed actuator with the same layers, stretched, and the same columns.
 
     The tube's section, the number of windows and the plane of symmetry must be the same.
+    """
+    z, _ = _stretched(mesh, actuator)
+    ring_at, mid_at = mesh.X[0, : mesh.ring, :2], mesh.X[0, mesh.ring :, :2]
+    changed = _along(actuator, mesh.size, z, mesh.segment, ring_at, mid_at, mesh.columns)
+    return replace(mesh, actuator=actuator, **changed)
+
+
+def _stretched(mesh: Mesh, actuator: Actuator) -> tuple[FloatArray, IntArray]:
+    """Stations of a mesh, stretched for a changed actuator.
+
+    High layers give way and low ones keep their heights, as long as that leaves something of
+    them: next to a cut's edge the tube is deformed as it was, however long its sectors are.
     """
     edges = [edge for sector in actuator.wrapped for edge in sector]
     z = np.zeros_like(mesh.z)
     for k, (start, end) in enumerate(pairwise(edges)):
         own = np.flatnonzero(mesh.segment == k)
         if own.size:
-            old = mesh.z[own[0] : own[-1] + 2]
-            share = (old - old[0]) / (old[-1] - old[0])
-            z[own[0] : own[-1] + 2] = start + share * (end - start)
-    ring_at, mid_at = mesh.X[0, : mesh.ring, :2], mesh.X[0, mesh.ring :, :2]
-    changed = _along(actuator, mesh.size, z, mesh.segment, ring_at, mid_at, mesh.columns)
-    return replace(mesh, actuator=actuator, **changed)
+            h = mesh.heights[own]
+            share = h * ((end - start) - h.sum()) / float(h @ h)
+            if share.min() < -_SHRINK:
+                share = np.full(len(h), (end - start) / h.sum() - 1.0)
+            z[own[0] + 1 : own[-1] + 2] = start + np.cumsum(h * (1.0 + share))
+    return z, mesh.segment
 
 
 def _along(

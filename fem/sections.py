@@ -55,10 +55,14 @@ class Chart:
 
     def rest(self) -> Pose:
         """Return the tube at rest."""
+        return self.of(self._X)
+
+    def of(self, x: FloatArray) -> Pose:
+        """Return a pose of given nodal positions, its sections' rotations counted from there."""
         # The mean of the nodes: about any other point a rigid motion would not look rigid.
-        centre = self._mean(self._X)
+        centre = self._mean(x)
         rotation = np.broadcast_to(np.eye(3), (len(self.z), 3, 3))
-        return Pose(centre, rotation, self._X - self._nodal(centre), self._X)
+        return Pose(centre, rotation, x - self._nodal(centre), x)
 
     def taut(self, strain: float) -> Pose:
         """Return the tube stretched a little every way, so that no thread is slack."""
@@ -201,5 +205,21 @@ def best_rotation(rest: FloatArray, now: FloatArray) -> FloatArray:
     """Rotation (3, 3) that takes points rest (n, 3) nearest to now (n, 3), both centred."""
     U, _, Vt = np.linalg.svd(now.T @ rest)
     U[:, 2] *= np.linalg.det(U) * np.linalg.det(Vt)
+    turned: FloatArray = U @ Vt
+    return turned
+
+
+def best_rotations(rest: FloatArray, now: FloatArray, half: bool) -> FloatArray:
+    """Rotations (S, 3, 3) that take sections rest (S, n, 3) nearest to now (S, n, 3).
+
+    ``half``: the sections are the half at x >= 0 of symmetric ones.
+    """
+    if half:
+        mirror = np.array([-1.0, 1.0, 1.0])
+        rest, now = (np.concatenate([v, v * mirror], axis=1) for v in (rest, now))
+    rest = rest - rest.mean(axis=1, keepdims=True)
+    now = now - now.mean(axis=1, keepdims=True)
+    U, _, Vt = np.linalg.svd(np.swapaxes(now, 1, 2) @ rest)
+    U[:, :, 2] *= (np.linalg.det(U) * np.linalg.det(Vt))[:, None]
     turned: FloatArray = U @ Vt
     return turned

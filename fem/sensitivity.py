@@ -97,14 +97,15 @@ def sensitivities(mesh: Mesh, x: FloatArray, pressure: float, threads: int = 2) 
                 moved = system.expand(x, du)
                 # The line and the angles by differences along the known motion.
                 size = min(1e-4 / max(float(np.abs(moved).max()), 1e-12), step)
+                ends = [near(sign * size) for sign in (1.0, -1.0)]
                 theta = [
-                    _angles(near(sign * size), x + sign * size * moved) for sign in (1.0, -1.0)
+                    _angles(mesh, x + sign * size * moved)
+                    for sign, mesh in zip((1.0, -1.0), ends, strict=True)
                 ]
-                ends = [near(sign * step) for sign in (1.0, -1.0)]
                 return Rate(
                     theta=(theta[0] - theta[1]) / (2.0 * size),
                     facing=measure.surface_line(mesh, moved, np.radians(270.0)),
-                    z=(ends[0].z - ends[1].z) / (2.0 * step),
+                    z=(ends[0].z - ends[1].z) / (2.0 * size),
                     volume=(2.0 if mesh.half else 1.0) * float(forces.volume_gradient @ du),
                 )
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,14 +12,17 @@ from numpy.typing import NDArray
 from fem import blas, measure
 from fem.actuator import Actuator
 from fem.assembly import System
-from fem.errors import Attempt
+from fem.errors import Attempt, NotConverged
 from fem.loadpath import Critical, Equilibrium, Options, Path
 from fem.mesh import Mesh, make_mesh
 from fem.meshsize import DEFAULT_MESH, MeshSize
+from fem.newton import correct
 from fem.sections import Chart
+from fem.transfer import transfer
 
 FloatArray = NDArray[np.float64]
 DEFAULT_OPTIONS = Options()
+_LEAST_WAY = 0.2  # of the way from one actuator to another, before it gives up
 
 
 @dataclass(frozen=True)
@@ -37,7 +40,7 @@ class State:
     volume : float, mm^3
         Enclosed: the air demand is what it exceeds that at rest.
     energy, work : float, N mm
-        Stored in rubber and gauze; done by the pressure so far.
+        Stored in rubber and gauze; done by the pressure so far (NaN where that is not known).
     residual : float
         Unbalanced forces over the pressure's.
     least_J : float
@@ -68,9 +71,10 @@ class State:
     def energy_error(self) -> float:
         """How far the stored energy is off the work done, over the work.
 
-        0 at rest and at the first state, from which on the balance is counted.
+        0 at rest and at the first state, from which on the balance is counted; NaN where the
+        work is not known.
         """
-        return abs(self.energy - self.work) / self.work if self.work > 0.0 else 0.0
+        return abs(self.energy - self.work) / self.work if self.work != 0.0 else 0.0
 
 
 @dataclass(frozen=True)
@@ -168,6 +172,100 @@ def solve(
         factorisations=sum(a.factorisations for a in path.history),
         seconds=time.perf_counter() - begun,
     )
+
+
+def solve_near(
+    actuator: Actuator,
+    known: Solution,
+    pressure: float,
+    options: Options = DEFAULT_OPTIONS,
+    *,
+    threads: int = 2,
+) -> Solution:
+    """Find an actuator's state at one pressure from a similar actuator's last state.
+
+    Newton's method at the pressure itself, on a way from actuator to actuator that is shortened
+    where it does not converge, takes the place of the path from rest. So the work of the
+    pressure is not known, and the energy error is NaN; and where the path from rest leads to
+    another equilibrium this does not tell.
+
+    Parameters
+    ----------
+    actuator : Actuator
+        With the same section of the tube as the known one, and as many windows.
+    known : Solution
+    pressure : float, MPa
+    options : Options
+    threads : {1, 2}
+
+    Returns
+    -------
+    Solution
+        With the states at rest and at ``pressure``, on a mesh of its own.
+
+    Raises
+    ------
+    NotConverged
+        Where the known state is too far off, or the state found is not stable.
+    """
+    begun = time.perf_counter()
+    first, history = known.mesh, list[Attempt]()
+    last, x, share, step = first, known.states[-1].x, 0.0, 1.0
+    with blas.one_thread():
+        while share < 1.0:
+            there = between(first.actuator, actuator, min(share + step, 1.0))
+            mesh = make_mesh(there, first.size, not first.half, like=first)
+            chart = Chart(mesh)
+            system = System(mesh, threads)
+            try:
+                start = chart.of(transfer(last, x, mesh))
+                done = correct(system, chart, start, pressure, options.tolerance)
+            finally:
+                system.close()
+            history.append(
+                Attempt(pressure, done.iterations, done.factored, done.residual, done.outcome)
+            )
+            if done.outcome == "converged" and not (done.negative and options.stable):
+                share, last, x = min(share + step, 1.0), mesh, done.pose.x
+            elif step > _LEAST_WAY:
+                step *= 0.5
+            else:
+                raise NotConverged(
+                    "no stable equilibrium found from the known one", tuple(history), 0.0
+                )
+        rest = System(last, threads=1).forces(last.X)
+    at_rest = Equilibrium(0.0, chart.rest(), rest, np.nan, 0.0, True, 0)
+    found = Equilibrium(pressure, done.pose, done.forces, np.nan, done.residual, True, 0)
+    return Solution(
+        mesh=last,
+        states=(_state(last, at_rest, 0.0), _state(last, found, np.nan)),
+        critical=None,
+        history=tuple(history),
+        newton_iterations=sum(a.iterations for a in history),
+        factorisations=sum(a.factorisations for a in history),
+        seconds=time.perf_counter() - begun,
+    )
+
+
+def between(first: Actuator, last: Actuator, share: float) -> Actuator:
+    """Actuator on the way from one to another with as many windows: lengths and angles.
+
+    All else is the last one's.
+    """
+
+    def mix(a: float, b: float) -> float:
+        return a + share * (b - a)
+
+    windows = tuple(
+        replace(
+            w,
+            centre=mix(v.centre, w.centre),
+            openF=mix(v.openF, w.openF),
+            alpha=mix(v.alpha, w.alpha),
+        )
+        for v, w in zip(first.windows, last.windows, strict=True)
+    )
+    return replace(last, length=mix(first.length, last.length), windows=windows)
 
 
 def last_work(known: Sequence[Equilibrium]) -> float:

@@ -45,19 +45,22 @@ def axial_threads(
     """
     gauze = actuator.gauze
     around = len(columns) - 1
-    cache = {
-        window: _lines(gauze, actuator.radius, columns, window, size) for window in {None, *sectors}
-    }
-    most = max(eta.shape[1] for eta, _ in cache.values())
+    kinds = list(dict.fromkeys(sectors))
+    lines = [_lines(gauze, actuator.radius, columns, window, size) for window in kinds]
+    most = max(eta.shape[1] for eta, _ in lines)
+    eta, width = (
+        np.stack([np.pad(pair[k], ((0, 0), (0, most - pair[k].shape[1]))) for pair in lines])
+        for k in (0, 1)
+    )
     zeta, along = np.polynomial.legendre.leggauss(size.orders[2])
-    gradient, weight = [], []
-    for window, h in zip(sectors, heights, strict=True):
-        eta, width = (np.pad(v, ((0, 0), (0, most - v.shape[1]))) for v in cache[window])
-        shape_at = np.broadcast_to(eta[:, :, None], (*eta.shape, len(zeta)))
-        dN = _face_gradient(size, shape_at, np.broadcast_to(zeta, shape_at.shape))
-        gradient.append(dN[..., 1].reshape(around, -1, dN.shape[-2]) * (2.0 / h))
-        weight.append((gauze.stiffness * width[:, :, None] * along * (0.5 * h)).reshape(around, -1))
-    return Threads(np.concatenate(gradient), np.concatenate(weight))
+    shape_at = np.broadcast_to(eta[..., None], (*eta.shape, len(zeta)))
+    dN = _face_gradient(size, shape_at, np.broadcast_to(zeta, shape_at.shape))
+    gradient = dN[..., 1].reshape(len(kinds), around, -1, dN.shape[-2])
+    weight = (gauze.stiffness * width[..., None] * along).reshape(len(kinds), around, -1)
+    which, half = [kinds.index(window) for window in sectors], 0.5 * heights[:, None, None]
+    gradient = gradient[which] / half[..., None]
+    weight = weight[which] * half
+    return Threads(gradient.reshape(-1, *gradient.shape[2:]), weight.reshape(-1, weight.shape[2]))
 
 
 def _lines(
