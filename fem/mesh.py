@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -150,19 +149,25 @@ def make_mesh(
         fixed_mid=_symmetry(mid_at, half),
         half=half,
         outer_ring=np.flatnonzero([p[0] == 1.0 for p in places.ring]),
-        **_along(actuator, size, z, segment, ring_at, mid_at, columns),
+        z=z,
+        segment=segment,
+        X=_positions(z, ring_at, mid_at),
+        **_woven(actuator, size, z, segment, columns),
     )
 
 
-def remesh(mesh: Mesh, actuator: Actuator) -> Mesh:
+def remesh(mesh: Mesh, actuator: Actuator, *, gauze: bool = True) -> Mesh:
     """Mesh a changed actuator with the same layers, stretched, and the same columns.
 
-    The tube's section, the number of windows and the plane of symmetry must be the same.
+    The tube's section, the number of windows and the plane of symmetry must be the same. Without
+    the ``gauze`` the threads stay as they were, for readings of lines and angles alone.
     """
     z, _ = _stretched(mesh, actuator)
-    ring_at, mid_at = mesh.X[0, : mesh.ring, :2], mesh.X[0, mesh.ring :, :2]
-    changed = _along(actuator, mesh.size, z, mesh.segment, ring_at, mid_at, mesh.columns)
-    return replace(mesh, actuator=actuator, **changed)
+    X = _positions(z, mesh.X[0, : mesh.ring, :2], mesh.X[0, mesh.ring :, :2])
+    changed = replace(mesh, actuator=actuator, z=z, X=X)
+    if not gauze:
+        return changed
+    return replace(changed, **_woven(actuator, mesh.size, z, mesh.segment, mesh.columns))
 
 
 def _stretched(mesh: Mesh, actuator: Actuator) -> tuple[FloatArray, IntArray]:
@@ -184,26 +189,22 @@ def _stretched(mesh: Mesh, actuator: Actuator) -> tuple[FloatArray, IntArray]:
     return z, mesh.segment
 
 
-def _along(
-    actuator: Actuator,
-    size: MeshSize,
-    z: FloatArray,
-    segment: IntArray,
-    ring_at: FloatArray,
-    mid_at: FloatArray,
-    columns: FloatArray,
-) -> dict[str, Any]:
-    """Make what of a mesh depends on the places along the tube, and on the sectors."""
+def _positions(z: FloatArray, ring_at: FloatArray, mid_at: FloatArray) -> FloatArray:
+    """Nodes at rest, of rings at z and of the mid sections between them."""
     X = np.zeros((len(z), len(ring_at) + len(mid_at), 3))
     X[:, : len(ring_at), :2] = ring_at
     X[:, : len(ring_at), 2] = z[:, None]
     X[:-1, len(ring_at) :, :2] = mid_at
     X[:-1, len(ring_at) :, 2] = 0.5 * (z[1:] + z[:-1])[:, None]
+    return X
+
+
+def _woven(
+    actuator: Actuator, size: MeshSize, z: FloatArray, segment: IntArray, columns: FloatArray
+) -> dict[str, Any]:
+    """Both families of threads."""
     sectors = [actuator.windows[k // 2] if k % 2 else None for k in segment.tolist()]
     return {
-        "z": z,
-        "segment": segment,
-        "X": X,
         "axial": axial_threads(actuator, size, np.diff(z), sectors, columns),
         "hoop": hoop_threads(actuator, size, z, columns),
     }

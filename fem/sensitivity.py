@@ -2,12 +2,13 @@
 
 At equilibrium R(x; p) = 0, so dx/dp = -K^-1 dR/dp with the tangent K at the state itself: one
 back-substitution a parameter. dR/dp at fixed positions is taken by central differences of the
-forces alone: the mesh keeps its layers and moves with the parameter.
+forces alone: the mesh keeps its layers and moves with the parameter. As each parameter is felt by
+its own segment of the tube alone, one pair of forces serves all joints.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 
 from fem import blas, measure
 from fem.actuator import Actuator, Window
-from fem.assembly import System
+from fem.assembly import Forces, System
 from fem.errors import FemError
 from fem.mesh import Mesh, remesh
 
@@ -81,7 +82,7 @@ def sensitivities(mesh: Mesh, x: FloatArray, pressure: float, threads: int = 2) 
     FemError
         Where the tangent is singular or the positions are no equilibrium.
     """
-    actuator, count = mesh.actuator, len(mesh.actuator.windows)
+    count = len(mesh.actuator.windows)
     with blas.one_thread():
         system = System(mesh, threads)
         try:
@@ -92,41 +93,97 @@ def sensitivities(mesh: Mesh, x: FloatArray, pressure: float, threads: int = 2) 
             if np.linalg.norm(forces.residual(pressure)) > 1e-4 * push:
                 raise FemError("these positions are not in equilibrium")
 
-            def rate(rhs: FloatArray, near: Callable[[float], Mesh], step: float) -> Rate:
-                du = inverse.solve(rhs)
-                moved = system.expand(x, du)
-                # The line and the angles by differences along the known motion.
-                size = min(1e-4 / max(float(np.abs(moved).max()), 1e-12), step)
-                ends = [near(sign * size) for sign in (1.0, -1.0)]
-                theta = [
-                    _angles(mesh, x + sign * size * moved)
-                    for sign, mesh in zip((1.0, -1.0), ends, strict=True)
-                ]
-                return Rate(
-                    theta=(theta[0] - theta[1]) / (2.0 * size),
-                    facing=measure.surface_line(mesh, moved, np.radians(270.0)),
-                    z=(ends[0].z - ends[1].z) / (2.0 * size),
-                    volume=(2.0 if mesh.half else 1.0) * float(forces.volume_gradient @ du),
-                )
-
-            def by(change: Callable[[Actuator, float], Actuator], step: float) -> Rate:
-                def near(amount: float) -> Mesh:
-                    return remesh(mesh, change(actuator, amount))
-
-                pulls = []
-                for sign in (1.0, -1.0):
-                    other = System(near(sign * step), threads=1)
-                    pulls.append(other.forces(x).internal)
-                return rate(-(pulls[0] - pulls[1]) / (2.0 * step), near, step)
-
+            changes = _changes(count)
+            rhs = [forces.volume_gradient]
+            for family in changes:
+                rhs += _pulls(system, x, family)
+            flows = inverse.solve(np.array(rhs))
+            rates = [_rate(system, x, forces, flows[0], None)]
+            every = [change for family in changes for change in family]
+            rates += [
+                _rate(system, x, forces, du, change)
+                for du, change in zip(flows[1:], every, strict=True)
+            ]
             return Sensitivities(
-                pressure=rate(forces.volume_gradient, lambda _: mesh, 1.0),
-                alpha=tuple(by(_alpha(k), _ANGLE) for k in range(count)),
-                openF=tuple(by(_stretch(2 * k + 1), _LENGTH) for k in range(count)),
-                wrapped=tuple(by(_stretch(2 * k), _LENGTH) for k in range(count + 1)),
+                pressure=rates[0],
+                alpha=tuple(rates[1 : count + 1]),
+                openF=tuple(rates[count + 1 : 2 * count + 1]),
+                wrapped=tuple(rates[2 * count + 1 :]),
             )
         finally:
             system.close()
+
+
+@dataclass(frozen=True)
+class _Change:
+    """A parameter: which segment of the tube it changes, and how; ``step`` is for differences."""
+
+    segment: int
+    step: float
+    change: Callable[[Actuator, float], Actuator]
+
+
+def _changes(count: int) -> tuple[tuple[_Change, ...], ...]:
+    """Families of parameters whose segments have no ring in common: alpha, openF, wrapped."""
+    windows, wrapped = range(1, 2 * count, 2), range(0, 2 * count + 1, 2)
+    return (
+        tuple(_Change(k, _ANGLE, _alpha(k // 2)) for k in windows),
+        tuple(_Change(k, _LENGTH, _stretch(k)) for k in windows),
+        tuple(_Change(k, _LENGTH, _stretch(k)) for k in wrapped),
+    )
+
+
+def _pulls(system: System, x: FloatArray, family: Sequence[_Change]) -> list[FloatArray]:
+    """-dR/dp of a family's parameters, each (count,).
+
+    All are changed at once: a segment's layers alone feel its own parameter, all others move
+    along as they are.
+    """
+    if not family:
+        return []
+    mesh, step = system.mesh, family[0].step
+    ends = []
+    for sign in (1.0, -1.0):
+        actuator = mesh.actuator
+        for parameter in family:
+            actuator = parameter.change(actuator, sign * step)
+        ends.append(System(remesh(mesh, actuator), threads=1).forces(x).internal)
+    pull = -(ends[0] - ends[1]) / (2.0 * step)
+    return [np.where(_felt(system, parameter.segment), pull, 0.0) for parameter in family]
+
+
+def _felt(system: System, segment: int) -> NDArray[np.bool_]:
+    """Unknowns (count,) of a segment's layers."""
+    layers = system.mesh.segment == segment
+    felt = np.zeros(system.unknowns.count, dtype=bool)
+    rings, mids, plug = system.split(felt[None])
+    rings[0, layers[:-1] | layers[1:]] = True
+    mids[0, layers] = True
+    plug[...] = layers[-1]
+    return felt
+
+
+def _rate(
+    system: System, x: FloatArray, forces: Forces, du: FloatArray, parameter: _Change | None
+) -> Rate:
+    """Read a rate off the flow du (count,); no parameter stands for the pressure."""
+    mesh = system.mesh
+    moved = system.expand(x, du)
+    # The angles by differences along the known motion.
+    size = min(1e-4 / max(float(np.abs(moved).max()), 1e-12), _LENGTH if parameter else 1.0)
+    ends, theta = [], []
+    for sign in (1.0, -1.0):
+        near = mesh
+        if parameter is not None:
+            near = remesh(mesh, parameter.change(mesh.actuator, sign * size), gauze=False)
+        ends.append(near)
+        theta.append(_angles(near, x + sign * size * moved))
+    return Rate(
+        theta=(theta[0] - theta[1]) / (2.0 * size),
+        facing=measure.surface_line(mesh, moved, np.radians(270.0)),
+        z=(ends[0].z - ends[1].z) / (2.0 * size),
+        volume=(2.0 if mesh.half else 1.0) * float(forces.volume_gradient @ du),
+    )
 
 
 def _angles(mesh: Mesh, x: FloatArray) -> FloatArray:
