@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -199,10 +200,16 @@ def _positions(z: FloatArray, ring_at: FloatArray, mid_at: FloatArray) -> FloatA
     return X
 
 
+class _Woven(TypedDict):
+    """Both families of threads, under their names in a `Mesh`."""
+
+    axial: Threads
+    hoop: Threads
+
+
 def _woven(
     actuator: Actuator, size: MeshSize, z: FloatArray, segment: IntArray, columns: FloatArray
-) -> dict[str, Any]:
-    """Both families of threads."""
+) -> _Woven:
     sectors = [actuator.windows[k // 2] if k % 2 else None for k in segment.tolist()]
     return {
         "axial": axial_threads(actuator, size, np.diff(z), sectors, columns),

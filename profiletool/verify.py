@@ -12,13 +12,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fem.actuator import Actuator, Window, chain
+from fem.actuator import AWAY, TOWARD, Actuator, Window, chain
 from fem.element import face_nodes, natural_nodes, shape
 from fem.errors import BadGeometry, NotConverged
 from fem.gauze import THREAD_EA, Gauze
 from fem.mesh import Mesh
 from fem.solve import Solution, State, solve
 from profiletool.joints.kinematics import STEP_MM, misfit
+from profiletool.joints.model import Chain
 from profiletool.records import (
     Critical,
     Design,
@@ -96,14 +97,40 @@ def actuator_of(design: Design) -> Actuator:
         Window(j.centre_mm, j.openF_mm, np.radians(j.alpha_closed_deg), _center(j.alpha_center_deg))
         for j in design.joints
     )
-    thread = THREAD_EA * (gauze.thread_mm / _PAPER_THREAD_MM) ** 2
     return Actuator(
         tube.length_mm,
         windows,
         diameter=tube.outer_diameter_mm,
         wall=tube.wall_mm,
-        gauze=Gauze(stiffness=thread * gauze.turns / gauze.pitch_mm),
+        gauze=_gauze(gauze.thread_mm, gauze.turns, gauze.pitch_mm),
     )
+
+
+def tube_of(chain: Chain, material: Material) -> Actuator:
+    """Model a chain of joints before it is a design.
+
+    Raises
+    ------
+    fem.errors.BadGeometry
+        When no such actuator can be modelled.
+    """
+    windows = tuple(
+        Window(float(centre), float(openF), float(alpha), float(TOWARD if sense > 0.0 else AWAY))
+        for centre, openF, alpha, sense in zip(
+            chain.centre, chain.openF, chain.alpha, chain.sense, strict=True
+        )
+    )
+    return Actuator(
+        chain.length,
+        windows,
+        diameter=material.outer_diameter_mm,
+        wall=material.wall_mm,
+        gauze=_gauze(material.thread_mm, material.turns, material.pitch_mm),
+    )
+
+
+def _gauze(thread_mm: float, turns: int, pitch_mm: float) -> Gauze:
+    return Gauze(stiffness=THREAD_EA * (thread_mm / _PAPER_THREAD_MM) ** 2 * turns / pitch_mm)
 
 
 def joint_actuator(
@@ -129,6 +156,7 @@ def inflate(
     sign: float,
     *,
     thread_pitch_mm: float = 1.0,
+    threads: int = 2,
     progress: Progress | None = None,
 ) -> Run:
     """Run finite elements from rest through the given pressures.
@@ -143,6 +171,8 @@ def inflate(
         +1 where a turn toward the object is counter-clockwise (see `Profile.sign`).
     thread_pitch_mm : float
         Width that a single thread stands for, all turns of the gauze together.
+    threads : {1, 2}
+        Of the computer, not of the gauze.
     progress : callable, optional
         Takes the pressure reached so far, bar.
 
@@ -156,7 +186,8 @@ def inflate(
         if progress is not None:
             progress(_BAR * pressure)
 
-    found = solve(actuator, [p / _BAR for p in pressures_bar], progress=told)
+    asked = [p / _BAR for p in pressures_bar]
+    found = solve(actuator, asked, threads=threads, progress=told)
     # Beyond half a turn the angles go on, and do not start again from the other side.
     angles = np.unwrap([np.degrees(s.theta) for s in found.states], period=360.0, axis=0)
     place = _Place(pose, sign, actuator.radius)
@@ -280,6 +311,11 @@ class _Place:
         off = points[:, 1, None] + self.radius
         placed: FloatArray = start + points[:, 2, None] * along + off * outward
         return placed
+
+
+def shape_of(mesh: Mesh, state: State, pose: Pose, sign: float) -> Shape:
+    """Lines of a state's tube in the object frame; ``pose`` and ``sign`` as in `inflate`."""
+    return _shape(mesh, state, _Place(pose, sign, mesh.actuator.radius))
 
 
 def _shape(mesh: Mesh, state: State, place: _Place) -> Shape:
