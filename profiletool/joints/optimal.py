@@ -1,0 +1,288 @@
+"""The joints of an actuator chosen as a whole, by a model: the best that one pressure allows.
+
+First the global optimum of a discretisation (`search`), for every number of joints and every
+pressure; then everything continuous is moved until the shape is best (`polish`). The fewest joints
+win whose shape lies within the tolerance.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from formula.errors import OutOfRange
+from profiletool.errors import NoObject
+from profiletool.joints.assign import END_WRAP_MM, INTERFERENCE_MM, wrap_mm
+from profiletool.joints.lines import Discretisation
+from profiletool.joints.model import Chain, Model
+from profiletool.joints.parameters import Actuator, Limits
+from profiletool.joints.pieces import cross, direction
+from profiletool.joints.polish import Goal, Polished, at_bound, goal_of, polish
+from profiletool.joints.search import MOST_JOINTS, Found, search
+from profiletool.records import FloatArray, Material, Misfit, Pose, Profile, Shape
+
+TOLERANCE_MM = 0.25
+BASE_TURN_RAD, BASE_OFFSET_MM = float(np.radians(15.0)), 3.0
+BAR_PER_MPA = 10.0
+DEPTH_SLACK_MM = 0.1  # beyond the interference, that nobody can see
+
+FINE = Discretisation()
+# Where no line on the profile will do: bridges over corners and hollows.
+WIDE = Discretisation(
+    step_mm=2.5,
+    turns_rad=(-0.2, -0.1, 0.0, 0.1, 0.2),
+    offsets_mm=(-0.3, 0.7, 2.0, 4.5),
+    least_pressure=0.16,
+)
+FAR = Discretisation(
+    step_mm=4.0,
+    turns_rad=(-0.3, -0.15, 0.0, 0.15, 0.3),
+    offsets_mm=(-4.0, -1.0, 2.0, 5.0, 9.0),
+    least_pressure=0.16,
+)
+_FAR_MM = 3.0
+_HOPEFUL = 3.0  # a path this many times the tolerance off may be polished into it
+_WORTH = 0.1  # of the tolerance: what one more joint must bring
+_RIVALS = 2  # paths polished for one number of joints
+_MOST_POLISHED = 7  # numbers of joints that are polished
+_SWAPS = 3
+
+
+@dataclass(frozen=True)
+class TradeOff:
+    """What more joints and more pressure bring.
+
+    Attributes
+    ----------
+    pressure : (P,) MPa
+    rms_mm : (P, J) mm
+        Of the best discrete actuator of 1 to J joints; infinite where there is none.
+    polished_mm : (J,) mm
+        Of the best polished one; NaN for numbers of joints that were not polished.
+    """
+
+    pressure: FloatArray
+    rms_mm: FloatArray
+    polished_mm: FloatArray
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What is asked of the choice.
+
+    Attributes
+    ----------
+    tolerance_mm : float
+        RMS that is good enough.
+    interference_mm : float
+        How deep the tube may lie in the object.
+    count : int or None
+        Number of joints; as few as reach the tolerance where None.
+    base_free : bool
+        Whether the base may leave the profile's start tangent.
+    """
+
+    tolerance_mm: float = TOLERANCE_MM
+    interference_mm: float = INTERFERENCE_MM
+    count: int | None = None
+    base_free: bool = False
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The chosen actuator as the model bends it.
+
+    ``depth`` is how deep it lies in the object at most, mm; ``pressure`` in MPa.
+    """
+
+    chain: Chain
+    pressure: float
+    pose: Pose
+    shape: Shape
+    misfit: Misfit
+    depth: float
+    trade_off: TradeOff
+    limits: Limits
+
+
+def limits_of(model: Model, material: Material, base_free: bool = False) -> Limits:
+    """Say what the tube, the gauze and the model allow."""
+    low, high = model.pressure
+    return Limits(
+        alpha=model.alpha,
+        pressure=(low, max(min(high, material.max_pressure_bar / BAR_PER_MPA), low)),
+        wrap_mm=wrap_mm(material),
+        end_mm=END_WRAP_MM,
+        root_mm=material.root_mm,
+        max_length_mm=material.max_length_mm,
+        base_turn_rad=BASE_TURN_RAD if base_free else 0.0,
+        base_offset_mm=BASE_OFFSET_MM if base_free else 0.0,
+    )
+
+
+def cuts_of(model: Model, material: Material) -> FloatArray:
+    """Give the cuts in whole meshes that the model holds for, mm.
+
+    Raises
+    ------
+    formula.errors.OutOfRange
+        When there is none.
+    """
+    (low, high), pitch = model.openF, material.pitch_mm
+    cuts = np.arange(np.ceil(low / pitch - 1e-9), np.floor(high / pitch + 1e-9) + 1.0) * pitch
+    if cuts.size == 0:
+        raise OutOfRange(
+            f"no whole number of {pitch:g} mm meshes lies within the {low:g} to {high:g} mm of "
+            "openF that the joints are known for"
+        )
+    return np.asarray(cuts, dtype=float)
+
+
+def choose(profile: Profile, model: Model, material: Material, wish: Wish | None = None) -> Choice:
+    """Choose number, places, senses, cuts and sectors of the joints, pressure and base.
+
+    Parameters
+    ----------
+    profile : Profile
+    model : Model
+    material : Material
+    wish : Wish, optional
+
+    Raises
+    ------
+    profiletool.errors.NoObject
+        When the profile is straight.
+    formula.errors.OutOfRange
+        When no cut in whole meshes is known to the model.
+    """
+    wish = wish or Wish()
+    away = cross(direction(profile.heading[0]), profile.points - profile.points[0])
+    if np.abs(away).max() <= wish.tolerance_mm:
+        raise NoObject(
+            f"the profile is straight to {wish.tolerance_mm:g} mm: there is nothing to bend; "
+            "take another --side or stretch, or a smaller --tolerance"
+        )
+    limits, cuts = limits_of(model, material, wish.base_free), cuts_of(model, material)
+    goal = goal_of(profile, limits, wish.interference_mm)
+    found = _searches(profile, model, cuts, limits, wish)
+    best, polished = _fewest(found, model, goal, wish)
+    best = _swapped(best, model, goal, cuts)
+    count = len(best.actuator.chain.openF)
+    polished[count - 1] = min(polished[count - 1], best.misfit.rms_mm)
+    at = best.actuator
+    trade_off = TradeOff(found[0].pressure, _rms(found, profile), polished)
+    return Choice(
+        at.chain, at.pressure, at.pose, best.shape, best.misfit, best.depth, trade_off, limits
+    )
+
+
+def _searches(
+    profile: Profile, model: Model, cuts: FloatArray, limits: Limits, wish: Wish
+) -> list[Found]:
+    """Search on the profile, and farther off it where that does not do."""
+    most = wish.count or MOST_JOINTS
+    found: list[Found] = []
+    for grid, enough in ((FINE, 2.0 * wish.tolerance_mm), (WIDE, _FAR_MM), (FAR, np.inf)):
+        found.append(search(profile, model, cuts, limits, wish.interference_mm, grid, most))
+        rms = _rms(found, profile)
+        if (rms[:, -1] if wish.count else rms).min() <= enough:
+            break
+    return found
+
+
+def _rms(found: list[Found], profile: Profile) -> FloatArray:
+    """Best RMS of several searches, on the pressures of the first: (P, J)."""
+    best = found[0].cost.copy()
+    for other in found[1:]:
+        # All end at the highest pressure.
+        top = best[-len(other.cost) :]
+        np.minimum(top, other.cost[-len(top) :], out=top)
+    return np.asarray(np.sqrt(best / profile.length_mm))
+
+
+def _fewest(
+    found: list[Found], model: Model, goal: Goal, wish: Wish
+) -> tuple[Polished, FloatArray]:
+    """Polish numbers of joints from below until one lies within the tolerance.
+
+    Where none does, one more joint must bring its worth.
+    """
+    rms = _rms(found, goal.profile).min(axis=0)
+    polished = np.full(len(rms), np.nan)
+    least = float(rms.min())
+    if wish.count is not None:
+        numbers = np.array([_known(rms, wish.count)])
+    else:
+        hopeful = rms <= max(_HOPEFUL * wish.tolerance_mm, 1.5 * least)
+        useful = np.arange(len(rms)) <= np.argmin(rms + 0.1 * _WORTH * wish.tolerance_mm)
+        numbers = np.flatnonzero(hopeful & useful)[:_MOST_POLISHED] + 1
+    best: dict[int, Polished] = {}
+    for n in numbers:
+        best[int(n)] = _best_of(found, model, goal, int(n))
+        polished[n - 1] = best[int(n)].misfit.rms_mm
+        if good(best[int(n)], wish):
+            return best[int(n)], polished
+    worth = _WORTH * wish.tolerance_mm
+    chosen = min(best, key=lambda n: _score(best[n], goal) + worth * n)
+    return best[chosen], polished
+
+
+def _known(rms: FloatArray, count: int) -> int:
+    """Give the number of joints nearest below ``count`` that there is a path for."""
+    known = np.flatnonzero(np.isfinite(rms[:count]))
+    return int(known[-1]) + 1 if known.size else count
+
+
+def good(found: Polished, wish: Wish) -> bool:
+    """Whether a shape is as good as asked for."""
+    deep = found.depth > wish.interference_mm + DEPTH_SLACK_MM
+    return found.misfit.rms_mm <= wish.tolerance_mm and not deep
+
+
+def _score(found: Polished, goal: Goal) -> float:
+    """RMS, and a share of what lies too deep, mm."""
+    return found.misfit.rms_mm + 0.1 * max(found.depth - goal.interference, 0.0)
+
+
+def _best_of(found: list[Found], model: Model, goal: Goal, joints: int) -> Polished:
+    """Polish the best paths of so many joints, of every search at its best pressures."""
+    tried = []
+    for one in found:
+        cost = one.cost[:, joints - 1]
+        order = [int(p) for p in np.argsort(cost, kind="stable")[:_RIVALS] if np.isfinite(cost[p])]
+        for pressure in order:
+            start = one.actuator(pressure, joints, model, goal.profile, goal.limits)
+            tried.append(polish(start, model, goal))
+    return min(tried, key=lambda polished: _score(polished, goal))
+
+
+def _swapped(best: Polished, model: Model, goal: Goal, cuts: FloatArray) -> Polished:
+    """Give joints whose alpha ends at a bound the next cut, as long as it helps."""
+    for _ in range(_SWAPS):
+        chain = best.actuator.chain
+        bound = at_bound(best.actuator, goal.limits)
+        tried = []
+        for k in np.flatnonzero(bound):
+            index = int(np.argmin(np.abs(cuts - chain.openF[k]))) - int(bound[k])
+            if 0 <= index < len(cuts):
+                openF = chain.openF.copy()
+                openF[k] = cuts[index]
+                actuator = replace(best.actuator, chain=replace(chain, openF=openF))
+                tried.append(polish(_fitting(actuator, goal.limits), model, goal))
+        better = min(tried, key=lambda polished: _score(polished, goal), default=best)
+        if _score(better, goal) >= _score(best, goal) - 1e-6:
+            break
+        best = better
+    return best
+
+
+def _fitting(actuator: Actuator, limits: Limits) -> Actuator:
+    """Move joints apart until their windows leave the least wrapped length."""
+    chain = actuator.chain
+    room = 0.5 * (chain.openF[1:] + chain.openF[:-1]) + limits.wrap_mm
+    F = np.maximum(np.diff(chain.centre), room)
+    root = max(float(chain.centre[0]), 0.5 * float(chain.openF[0]) + limits.wrap_mm)
+    centre = root + np.concatenate([[0.0], np.cumsum(F)])
+    length = float(chain.length + centre[-1] - chain.centre[-1])
+    return replace(actuator, chain=replace(chain, centre=centre, length=length))
