@@ -18,7 +18,7 @@ from fem import blas, measure
 from fem.actuator import Actuator, Window
 from fem.assembly import Forces, System
 from fem.errors import FemError
-from fem.mesh import Mesh, remesh
+from fem.mesh import Mesh, make_mesh, remesh
 
 FloatArray = NDArray[np.float64]
 
@@ -58,12 +58,15 @@ class Sensitivities:
         By each cut's length, the wrapped lengths kept.
     wrapped : tuple of Rate, per mm
         By the length of each wrapped sector, the cuts' lengths kept; the first is the root's.
+    wall : Rate, per mm
+        By the wall's thickness, the outer diameter kept.
     """
 
     pressure: Rate
     alpha: tuple[Rate, ...]
     openF: tuple[Rate, ...]
     wrapped: tuple[Rate, ...]
+    wall: Rate
 
 
 def sensitivities(mesh: Mesh, x: FloatArray, pressure: float, threads: int = 2) -> Sensitivities:
@@ -108,7 +111,8 @@ def sensitivities(mesh: Mesh, x: FloatArray, pressure: float, threads: int = 2) 
                 pressure=rates[0],
                 alpha=tuple(rates[1 : count + 1]),
                 openF=tuple(rates[count + 1 : 2 * count + 1]),
-                wrapped=tuple(rates[2 * count + 1 :]),
+                wrapped=tuple(rates[2 * count + 1 : -1]),
+                wall=rates[-1],
             )
         finally:
             system.close()
@@ -116,21 +120,36 @@ def sensitivities(mesh: Mesh, x: FloatArray, pressure: float, threads: int = 2) 
 
 @dataclass(frozen=True)
 class _Change:
-    """A parameter: which segment of the tube it changes, and how; ``step`` is for differences."""
+    """A parameter: which segment of the tube it changes, and how; ``step`` is for differences.
 
-    segment: int
+    None stands for the whole tube.
+    """
+
+    segment: int | None
     step: float
     change: Callable[[Actuator, float], Actuator]
 
 
 def _changes(count: int) -> tuple[tuple[_Change, ...], ...]:
-    """Families of parameters whose segments have no ring in common: alpha, openF, wrapped."""
+    """Families of parameters whose segments have no ring in common: alpha, openF, wrapped, wall."""
     windows, wrapped = range(1, 2 * count, 2), range(0, 2 * count + 1, 2)
     return (
         tuple(_Change(k, _ANGLE, _alpha(k // 2)) for k in windows),
         tuple(_Change(k, _LENGTH, _stretch(k)) for k in windows),
         tuple(_Change(k, _LENGTH, _stretch(k)) for k in wrapped),
+        (_Change(None, _LENGTH, _thicken),),
     )
+
+
+def _thicken(actuator: Actuator, amount: float) -> Actuator:
+    return replace(actuator, wall=actuator.wall + amount)
+
+
+def _changed(mesh: Mesh, actuator: Actuator) -> Mesh:
+    """Mesh a changed actuator with as many nodes."""
+    if actuator.wall != mesh.actuator.wall:
+        return make_mesh(actuator, mesh.size, not mesh.half, like=mesh)
+    return remesh(mesh, actuator)
 
 
 def _pulls(system: System, x: FloatArray, family: Sequence[_Change]) -> list[FloatArray]:
@@ -147,13 +166,15 @@ def _pulls(system: System, x: FloatArray, family: Sequence[_Change]) -> list[Flo
         actuator = mesh.actuator
         for parameter in family:
             actuator = parameter.change(actuator, sign * step)
-        ends.append(System(remesh(mesh, actuator), threads=1).forces(x).internal)
+        ends.append(System(_changed(mesh, actuator), threads=1).forces(x).internal)
     pull = -(ends[0] - ends[1]) / (2.0 * step)
     return [np.where(_felt(system, parameter.segment), pull, 0.0) for parameter in family]
 
 
-def _felt(system: System, segment: int) -> NDArray[np.bool_]:
-    """Unknowns (count,) of a segment's layers."""
+def _felt(system: System, segment: int | None) -> NDArray[np.bool_]:
+    """Unknowns (count,) of a segment's layers; all of them for None."""
+    if segment is None:
+        return np.ones(system.unknowns.count, dtype=bool)
     layers = system.mesh.segment == segment
     felt = np.zeros(system.unknowns.count, dtype=bool)
     rings, mids, plug = system.split(felt[None])

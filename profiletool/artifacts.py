@@ -23,6 +23,8 @@ def files_of(result: Result) -> dict[str, bytes]:
     """Make every file of the output folder: name to content."""
     design, checked = result.design, result.check
     lines = {"target": result.subject.profile.points, "formula": result.shape.facing}
+    if result.plan.by != "formula":
+        lines["response"] = result.plan.bent.facing
     if checked is not None and checked.shape is not None:
         lines["fe"] = checked.shape.facing
     files = {
@@ -104,7 +106,8 @@ def template_files(design: Design) -> dict[str, bytes]:
 
 def scene_of(result: Result) -> Scene:
     """Gather what the overlay shows."""
-    subject, layout, design = result.subject, result.layout, result.design
+    subject, plan, design = result.subject, result.plan, result.design
+    layout = plan.layout
     backdrop = None
     if subject.picture is not None and subject.origin_px is not None:
         backdrop = backdrop_of(subject.picture, subject.scale.mm_per_px, subject.origin_px)
@@ -113,10 +116,11 @@ def scene_of(result: Result) -> Scene:
     return Scene(
         backdrop,
         subject.profile,
-        result.sectors,
+        plan.places,
         design,
         layout.bends(),
-        result.shape,
+        plan.by,
+        plan.bent,
         straight,
         result.check.shape if result.check is not None else None,
     )

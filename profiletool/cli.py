@@ -146,20 +146,44 @@ def design(
     max_length: Annotated[float, typer.Option(help="Longest tube, mm.")] = 250.0,
     formula: FormulaFile = None,
     method: Annotated[
-        Literal["paper"], typer.Option(help="How joints are chosen (optimal comes later).")
-    ] = "paper",
+        Literal["optimal", "paper"],
+        typer.Option(help="How joints are chosen: all at once, or one by one as the paper does."),
+    ] = "optimal",
     joints: Annotated[
         int | None,
         typer.Option(min=1, help="Number of joints (default: as few as reach --tolerance)."),
     ] = None,
     tolerance: Annotated[
-        float, typer.Option(help="How far the polygon of joints may lie off the profile, mm.")
+        float | None,
+        typer.Option(
+            help="How far the shape may lie off the profile, mm: RMS (default: joints are added "
+            "down to 0.25 by the joint response, and 1 % of the length will do), or for --method "
+            "paper the polygon of joints at most (default: 1)."
+        ),
+    ] = None,
+    interference: Annotated[
+        float, typer.Option(help="How deep the tube may lie in the object, mm (optimal).")
+    ] = 0.3,
+    base_free: Annotated[
+        bool,
+        typer.Option(
+            "--base-free", help="Let the base leave the profile's start tangent (optimal)."
+        ),
+    ] = False,
+    alpha_step: Annotated[
+        float | None,
+        typer.Option(help="Step of alpha, deg (default: one thread; 0: any; optimal)."),
+    ] = None,
+    place_step: Annotated[
+        float, typer.Option(help="Step of the joints' places, mm (0: any; optimal).")
     ] = 1.0,
     verify: Annotated[
         bool,
         typer.Option(help="Run finite elements of the whole actuator: some seconds."),
     ] = True,
-    refine: Annotated[bool, typer.Option(help="Accepted, and does nothing yet.")] = True,
+    refine: Annotated[
+        bool, typer.Option(help="Let finite elements correct the design (optimal; needs verify).")
+    ] = True,
     config: Annotated[
         Path | None,
         typer.Option(callback=_config, is_eager=True, help="TOML file with any of these options."),
@@ -173,16 +197,16 @@ def design(
     debug: Debug = False,
 ) -> None:
     """Design an actuator that mirrors the side of an object, and its cut template."""
-    del method, refine, config  # parsed for the contract; see their help
+    del config  # its options are among the others by now
     with exit_codes(debug):
-        from profiletool import artifacts, output, pipeline
+        from profiletool import artifacts, output, pipeline, subject
         from profiletool.image.scale import ScaleRequest
         from profiletool.records import Material
         from profiletool.report.text import joint_table
 
         folder = out or Path(f"{picture.stem}_design")
         output.check_free(folder, force)
-        request = pipeline.Request(
+        request = subject.Request(
             file=picture,
             scale=ScaleRequest(height, width, mm_per_px, marker_mm),
             side=side,
@@ -201,6 +225,12 @@ def design(
             ),
             formula=formula,
             verify=verify,
+            method=method,
+            refine=refine,
+            interference_mm=interference,
+            base_free=base_free,
+            alpha_step_deg=alpha_step,
+            place_step_mm=place_step,
         )
         say = speaker(quiet)
         with progress_bar("finite elements", quiet) as progress:

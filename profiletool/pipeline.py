@@ -4,72 +4,41 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from formula.errors import BadFormula, OutOfRange
+from formula.errors import BadFormula
 from formula.theta import Formula, load_formula
-from profiletool.errors import Infeasible, NoObject, UnreadableInput, UsageError
-from profiletool.image.load import load_picture
-from profiletool.image.marker import find_markers
-from profiletool.image.scale import ScaleRequest, scale_of
-from profiletool.image.silhouette import find_silhouette
-from profiletool.joints.assign import Layout, joint_rules, lay_out, theta_table
+from profiletool.errors import UnreadableInput
+from profiletool.joints.assign import Layout
 from profiletool.joints.kinematics import deform, misfit
-from profiletool.joints.limits import disagreement, named, shape_warnings, shortfalls, warnings
-from profiletool.joints.sectors import Sector, discretise
-from profiletool.profile.side import top_middle
-from profiletool.profile.target import Reach, profile_of_line, profile_of_object
-from profiletool.profile.vector import SUFFIXES, load_vector
+from profiletool.joints.limits import (
+    bridged,
+    disagreement,
+    named,
+    polygon_warnings,
+    shape_warnings,
+    warnings,
+)
+from profiletool.plan import PAPER_TOLERANCE_MM, Plan, not_good, optimal_plan, paper_plan
 from profiletool.records import (
     Design,
     Fit,
     FormulaRef,
     Gauze,
-    Material,
-    Picture,
     Profile,
-    Scale,
     Shape,
-    Side,
-    Silhouette,
     Source,
     Tube,
 )
+from profiletool.sensitivity import sensitivity_of
+from profiletool.subject import Request, Subject, check_request, drawing_notes, find_subject
 from profiletool.template.unroll import best_seam, off_mesh
 from profiletool.verify import Check, Progress, check
 
-_WRONG_SCALE = {"height": {"top", "bottom"}, "width": {"left", "right"}}
-
-
-@dataclass(frozen=True)
-class Request:
-    """What `design` was asked for."""
-
-    file: Path
-    scale: ScaleRequest = field(default_factory=ScaleRequest)
-    side: Side = "left"
-    start_pct: float = 0.0
-    end_pct: float = 100.0
-    clearance_mm: float = 0.0
-    tolerance_mm: float = 1.0
-    joints: int | None = None
-    material: Material = field(default_factory=Material)
-    formula: Path | None = None
-    verify: bool = False
-
-
-@dataclass(frozen=True)
-class Subject:
-    """The object that a design is for; picture, silhouette and origin only where there is one."""
-
-    picture: Picture | None
-    silhouette: Silhouette | None
-    scale: Scale
-    origin_px: tuple[float, float] | None
-    profile: Profile
+DEPTH_MM = 1.0  # a tube that presses deeper into the object is warned of
 
 
 @dataclass(frozen=True)
@@ -83,8 +52,7 @@ class Result:
     design: Design
     reasons: tuple[str, ...]
     subject: Subject
-    sectors: tuple[Sector, ...]
-    layout: Layout
+    plan: Plan
     shape: Shape
     check: Check | None
 
@@ -105,49 +73,47 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
     ProfiletoolError
         Of the class whose exit code fits.
     """
-    _check(request)
+    check_request(request)
     formula = read_formula(request.formula)
     subject = find_subject(request, say)
     profile, material = subject.profile, request.material
-    try:
-        table = theta_table(formula, material)
-    except OutOfRange as error:
-        raise UsageError(f"{error}; change --pitch, --max-pressure or --formula") from error
-    rules = joint_rules(table, material, request.tolerance_mm)
-    sectors = discretise(profile, rules, request.joints)
-    if not sectors:
-        raise NoObject(
-            f"the profile is straight to {request.tolerance_mm:g} mm: there is nothing to bend; "
-            "take another --side or stretch, or a smaller --tolerance"
-        )
-    try:
-        layout = lay_out(profile, sectors, table, material)
-    except OutOfRange as error:
-        raise Infeasible(f"no pressure serves all joints: {error}") from error
-    say(f"joints: {len(sectors)} at {layout.pressure_bar:.2f} bar")
-
-    def place(s: float) -> str:
-        share = request.start_pct + s / profile.length_mm * (request.end_pct - request.start_pct)
-        return f"{s:.0f} mm down the profile ({share:.0f} % of the side)"
-
-    reasons = shortfalls(sectors, layout, rules, material, formula, request.joints, place)
+    make = optimal_plan if request.method == "optimal" else paper_plan
+    plan = make(request, profile, formula, say)
+    layout = plan.layout
     shape = deform(layout.bends(), layout.length_mm, material.radius_mm, layout.pose, profile.sign)
-    design = _design(request, subject, formula, layout, shape, reasons)
+    design = _design(request, subject, formula, plan, shape)
     checked = _verified(design, profile, say, progress) if request.verify else None
     if checked is not None:
         design = checked.design
-    known = (checked.shape if checked is not None else None) or shape
-    fit = design.fit.fe or design.fit.formula
-    notes = [*reasons, *_drawing_notes(request, subject)]
-    notes += warnings(
-        layout, profile, fit, request.tolerance_mm, material, formula, design.verified
-    )
+    reasons = plan.reasons
+    if request.method == "optimal":
+        reasons = (*reasons, *not_good(plan, design, profile, request))
+    known = (checked.shape if checked is not None else None) or plan.bent
+    notes = [*reasons, *plan.notes, *drawing_notes(request, subject)]
+    notes += _method_notes(request, plan, design, profile, formula)
     notes += disagreement(design.joints, design.pressure_bar)
-    notes += shape_warnings(sectors, known, profile, request.tolerance_mm, request.joints)
+    notes += shape_warnings(known, profile, request.tolerance_mm or DEPTH_MM)
     notes += _gauze_notes(layout, design.gauze)
     notes += _fe_notes(checked)
-    design = replace(design, warnings=tuple(notes))
-    return Result(design, reasons, subject, sectors, layout, shape, checked)
+    if checked is not None and checked.run is not None and checked.shape is not None:
+        design = replace(design, sensitivity=sensitivity_of(design, checked.run, profile))
+    design = replace(design, feasible=not reasons, warnings=tuple(notes))
+    return Result(design, reasons, subject, plan, shape, checked)
+
+
+def _method_notes(
+    request: Request, plan: Plan, design: Design, profile: Profile, formula: Formula
+) -> Iterator[str]:
+    """Say what the user should know of how the joints were chosen."""
+    if request.method == "paper":
+        tolerance = request.tolerance_mm or PAPER_TOLERANCE_MM
+        fit = design.fit.fe or design.fit.formula
+        yield from warnings(
+            plan.layout, profile, fit, tolerance, request.material, formula, design.verified
+        )
+        yield from polygon_warnings(plan.sectors, tolerance, request.joints)
+    else:
+        yield from bridged(profile)
 
 
 def read_formula(path: Path | None) -> Formula:
@@ -164,96 +130,12 @@ def read_formula(path: Path | None) -> Formula:
         raise UnreadableInput(str(error)) from error
 
 
-def find_subject(request: Request, say: Callable[[str], None]) -> Subject:
-    """Read the picture or drawing and find the profile that the tube shall follow.
-
-    Raises
-    ------
-    UnreadableInput, NoScale, NoObject, UsageError
-    """
-    reach = Reach(
-        side=request.side,
-        radius_mm=request.material.radius_mm,
-        clearance_mm=request.clearance_mm,
-        start_pct=request.start_pct,
-        end_pct=request.end_pct,
-    )
-    if request.file.suffix.lower() in SUFFIXES:
-        return _drawn_subject(request, reach, say)
-    picture = load_picture(request.file)
-    markers = find_markers(picture) if request.scale.marker_mm is not None else []
-    silhouette = find_silhouette(picture, ignore=markers)
-    scale = scale_of(picture, silhouette, request.scale)
-    _check_frame(silhouette, scale, request.side)
-    k = scale.mm_per_px
-    origin = top_middle(silhouette.contour_px * [1.0, -1.0]) * [1.0, -1.0]
-    outline = (silhouette.contour_px - origin) * [k, -k]
-    width, height = np.ptp(outline, axis=0)
-    say(
-        f"object: {width:.1f} x {height:.1f} mm, found by {silhouette.method}, "
-        f"{k:.4g} mm per pixel from {scale.source}"
-    )
-    reach = replace(reach, noise_mm=silhouette.noise_px * k, spacing_mm=k)
-    profile = profile_of_object(outline, reach)
-    return Subject(picture, silhouette, scale, (float(origin[0]), float(origin[1])), profile)
-
-
-def _drawn_subject(request: Request, reach: Reach, say: Callable[[str], None]) -> Subject:
-    drawn = load_vector(request.file)
-    make = profile_of_object if drawn.closed else profile_of_line
-    profile = make(drawn.points, reach)
-    kind = "closed outline" if drawn.closed else "open profile"
-    x, y = profile.points[0]
-    say(f"drawing: {kind}, {profile.length_mm:.1f} mm to follow from ({x:.1f}, {y:.1f}) down")
-    return Subject(None, None, Scale(1.0, "vector"), None, profile)
-
-
-def _check(request: Request) -> None:
-    """Refuse options that no design can be made with."""
-    material = request.material
-    positive = {
-        "--diameter": material.outer_diameter_mm,
-        "--wall": material.wall_mm,
-        "--root": material.root_mm,
-        "--pitch": material.pitch_mm,
-        "--max-pressure": material.max_pressure_bar,
-        "--max-length": material.max_length_mm,
-        "--tolerance": request.tolerance_mm,
-    }
-    for option, value in positive.items():
-        if not (np.isfinite(value) and value > 0.0):
-            raise UsageError(f"{option} must be a number above 0, not {value:g}")
-    if not (np.isfinite(request.clearance_mm) and request.clearance_mm >= 0.0):
-        raise UsageError(f"--clearance must be 0 or more, not {request.clearance_mm:g}")
-    if material.pitch_mm <= material.thread_mm:
-        raise UsageError(f"--pitch must be more than the thread, {material.thread_mm:g} mm")
-    if material.wall_mm >= material.radius_mm:
-        raise UsageError("--wall must be less than half of --diameter")
-    if not 0.0 <= request.start_pct < request.end_pct <= 100.0:
-        raise UsageError("--from and --to must be percentages with --from below --to")
-
-
-def _check_frame(silhouette: Silhouette, scale: Scale, side: Side) -> None:
-    """Refuse an object that is cut off where it matters."""
-    cut = silhouette.touches & ({side, "top"} | _WRONG_SCALE.get(scale.source, set()))
-    if cut:
-        raise NoObject(
-            f"the object runs out of the frame ({', '.join(sorted(cut))}); "
-            "take a picture with some ground all around it"
-        )
-
-
 def _design(
-    request: Request,
-    subject: Subject,
-    formula: Formula,
-    layout: Layout,
-    shape: Shape,
-    reasons: tuple[str, ...],
+    request: Request, subject: Subject, formula: Formula, plan: Plan, shape: Shape
 ) -> Design:
     """Gather the design; what the user should know of it comes later."""
-    material, profile = request.material, subject.profile
-    fit = misfit(shape, profile)
+    material, profile, layout = request.material, subject.profile, plan.layout
+    response = None if plan.by == "formula" else misfit(plan.bent, profile)
     seam = best_seam(layout.joints).seam_deg
     gauze = Gauze(material.pitch_mm, material.thread_mm, material.turns, seam)
     return Design(
@@ -273,10 +155,11 @@ def _design(
         pressure_bar=layout.pressure_bar,
         joints=layout.joints,
         base_pose=layout.pose,
-        fit=Fit(formula=fit, fe=None),
-        feasible=not reasons,
+        fit=Fit(formula=misfit(shape, profile), fe=None, response=response),
+        feasible=not plan.reasons,
         verified=False,
         warnings=(),
+        method=request.method,
     )
 
 
@@ -299,19 +182,6 @@ def _fe_notes(checked: Check | None) -> Iterator[str]:
         yield f"NOT VERIFIED: finite elements: {checked.failure}"
     elif checked.run is not None and checked.run.verification.last.touches:
         yield "by FE the bent tube touches itself; the model lets it pass through"
-
-
-def _drawing_notes(request: Request, subject: Subject) -> Iterator[str]:
-    """Say what the user should know of how the picture was read."""
-    if subject.silhouette is None:
-        if request.scale != ScaleRequest():
-            yield "a drawing is in mm already: the scale options were not used"
-        return
-    if subject.silhouette.method == "grabcut":
-        yield "the silhouette is a guess on a busy ground: look at it in overlay.png"
-    if subject.silhouette.touches:
-        edges = ", ".join(sorted(subject.silhouette.touches))
-        yield f"the object runs out of the frame ({edges}); the profile ends there"
 
 
 def _gauze_notes(layout: Layout, gauze: Gauze) -> Iterator[str]:

@@ -151,8 +151,10 @@ class Joint:
     """One joint of an actuator, as a row of the paper's Table 5.
 
     theta is a magnitude; ``alpha_center_deg`` tells the direction (270 toward the object, 90
-    away from it). ``F_mm`` runs from this joint's centre to the next one's, the last one's to
-    the tube's end. ``centre_mm`` is the joint's place along the tube, from the clamped end.
+    away from it). It is given as wanted, and as the formula, the joint response (where the joints
+    were chosen by it) and FE predict it. ``F_mm`` runs from this joint's centre to the next
+    one's, the last one's to the tube's end. ``centre_mm`` is the joint's place along the tube,
+    from the clamped end.
     """
 
     number: int
@@ -164,6 +166,7 @@ class Joint:
     theta_formula_deg: float
     theta_fe_deg: float | None
     centre_mm: float
+    theta_response_deg: float | None = None
 
     @property
     def sense(self) -> float:
@@ -232,10 +235,24 @@ class Misfit:
 
 @dataclass(frozen=True)
 class Fit:
-    """The misfit as the formula and as FE predict it; None where no FE has checked the design."""
+    """The misfit as the formula, FE and the joint response predict it; None where they do not."""
 
     formula: Misfit
     fe: Misfit | None
+    response: Misfit | None = None
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """How far the bent object-facing line moves off itself when an input is off by a little.
+
+    ``joint`` is the one that matters most, None where the input is the whole tube's.
+    """
+
+    what: str
+    joint: int | None
+    rms_mm: float
+    max_mm: float
 
 
 @dataclass(frozen=True)
@@ -365,3 +382,5 @@ class Design:
     feasible: bool
     verified: bool
     warnings: tuple[str, ...]
+    method: str = "paper"
+    sensitivity: tuple[Sensitivity, ...] = ()

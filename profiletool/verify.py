@@ -16,6 +16,7 @@ from fem.actuator import AWAY, TOWARD, Actuator, Window, chain
 from fem.element import face_nodes, natural_nodes, shape
 from fem.errors import BadGeometry, NotConverged
 from fem.gauze import THREAD_EA, Gauze
+from fem.loadpath import Critical as FemCritical
 from fem.mesh import Mesh
 from fem.solve import Solution, State, solve
 from profiletool.joints.kinematics import STEP_MM, misfit
@@ -195,14 +196,13 @@ def inflate(
         _state(found, state, theta, place, thread_pitch_mm)
         for state, theta in zip(found.states, angles, strict=True)
     )
-    ended = found.critical
     mesh = found.mesh
     return Run(
         Verification(
             rest=rest,
             states=tuple(loaded),
             asked_bar=max(pressures_bar),
-            critical=None if ended is None else Critical(ended.kind, _BAR * ended.pressure),
+            critical=None if found.critical is None else ended(found.critical),
             elements=mesh.elements,
             nodes=mesh.nodes,
             dofs=_dofs(mesh),
@@ -260,6 +260,11 @@ def magnitude(theta_deg: float, center_deg: float) -> float:
 def shortly(error: NotConverged) -> str:
     """Say in a few words how far a run came that did not converge."""
     return f"no equilibrium found beyond {_BAR * error.reached:.2f} bar"
+
+
+def ended(critical: FemCritical) -> Critical:
+    """Give what ended a run in bar."""
+    return Critical(critical.kind, _BAR * critical.pressure)
 
 
 def said(critical: Critical) -> str:

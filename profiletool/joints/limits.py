@@ -118,9 +118,7 @@ def warnings(
             f"{named(j.number for j in eager)} will bend up to {worst:.1f} deg more than wanted: "
             f"the look-up rounds up, and the table is coarse at {layout.pressure_bar:.2f} bar"
         )
-    share = 100.0 * float(np.mean(profile.bridged))
-    if share >= 0.5:
-        found.append(f"{share:.0f} % of the profile is bridged: grooves too tight to enter")
+    found += bridged(profile)
     if fit.max_mm > tolerance_mm:
         by = "by FE the bent shape lies" if verified else "the bent shape is predicted"
         found.append(
@@ -129,6 +127,13 @@ def warnings(
             "the drawing and corrects neither"
         )
     return tuple(found)
+
+
+def bridged(profile: Profile) -> Iterator[str]:
+    """Say how much of the profile the tube spans without touching it."""
+    share = 100.0 * float(np.mean(profile.bridged))
+    if share >= 0.5:
+        yield f"{share:.0f} % of the profile is bridged: grooves too tight to enter"
 
 
 def disagreement(joints: Sequence[Joint], pressure_bar: float) -> Iterator[str]:
@@ -148,22 +153,22 @@ def disagreement(joints: Sequence[Joint], pressure_bar: float) -> Iterator[str]:
             )
 
 
-def shape_warnings(
-    sectors: Sequence[Sector],
-    shape: Shape,
-    profile: Profile,
-    tolerance_mm: float,
-    count: int | None,
+def polygon_warnings(
+    sectors: Sequence[Sector], tolerance_mm: float, count: int | None
 ) -> Iterator[str]:
-    """Say what is wrong with the polygon that was asked for, and with the bent shape."""
+    """Say what is wrong with the polygon that was asked for."""
     off = max(sector.deviation_mm for sector in sectors)
     if count is not None and off > tolerance_mm:
         yield (
             f"with --joints {count} the polygon is {off:.1f} mm off the profile, "
             f"beyond --tolerance {tolerance_mm:g}"
         )
+
+
+def shape_warnings(shape: Shape, profile: Profile, depth_mm: float) -> Iterator[str]:
+    """Say what is wrong with the bent shape; it may lie ``depth_mm`` deep in the object."""
     depth = depth_inside(shape, profile)
-    if depth > tolerance_mm:
+    if depth > depth_mm:
         yield f"the tube would press up to {depth:.1f} mm into the object"
     if meets_itself(shape):
         yield "the bent tube runs into itself"

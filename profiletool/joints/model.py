@@ -37,20 +37,23 @@ class Chain:
 
 
 class Model(Protocol):
-    """A joint's answer to pressure, and a whole actuator's.
+    """A joint's answer to pressure, and a whole actuator's."""
 
-    Attributes
-    ----------
-    radius : float, mm
-        Outer radius of the tube.
-    openF, alpha, pressure : (float, float)
-        What it holds for: mm, rad, MPa.
-    """
+    @property
+    def radius(self) -> float:
+        """Outer radius of the tube, mm."""
 
-    radius: float
-    openF: tuple[float, float]
-    alpha: tuple[float, float]
-    pressure: tuple[float, float]
+    @property
+    def openF(self) -> tuple[float, float]:
+        """What cuts it holds for, mm."""
+
+    @property
+    def alpha(self) -> tuple[float, float]:
+        """What alpha_closed it holds for, rad."""
+
+    @property
+    def pressure(self) -> tuple[float, float]:
+        """What pressures it holds for, MPa."""
 
     def theta(self, openF: ArrayLike, alpha: ArrayLike, pressure: ArrayLike) -> FloatArray:
         """Angle of a joint alone, rad; arguments broadcast."""
@@ -68,7 +71,7 @@ class Model(Protocol):
         """
 
     def shape(self, chain: Chain, pressure: float, pose: Pose, sign: float) -> Shape:
-        """The whole tube at a pressure, neighbours' influence included.
+        """Bend the whole tube at a pressure, neighbours' influence included.
 
         ``pose`` is that of the object-facing line at the clamped end; ``sign`` is +1 where a turn
         toward the object is counter-clockwise (see `Profile.sign`).

@@ -137,6 +137,11 @@ class Parameters:
         room = 0.5 * float(self.openF[0]) + self.limits.wrap_mm
         return max(self.limits.root_mm, room, place)
 
+    def root_grows(self, vector: FloatArray) -> bool:
+        """Whether the root grows with ``place``; else joint 1 slides with all of the tube."""
+        place = float(vector[2 * self.joints - 1])
+        return self.root(place + 1e-6) > self.root(place)
+
     def unpack(self, vector: FloatArray) -> Actuator:
         """Build the actuator of a vector: (size,)."""
         n = self.joints

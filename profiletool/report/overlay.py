@@ -16,7 +16,6 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
 from profiletool.joints.kinematics import Bend
-from profiletool.joints.sectors import Sector
 from profiletool.profile.offset import offset_curve, offset_points
 from profiletool.records import Design, FloatArray, Joint, Picture, Profile, Shape
 from profiletool.report.palette import BLUE, GREEN, GREY, INK, PURPLE, RED, SKY, YELLOW
@@ -44,14 +43,16 @@ class Scene:
     """All that the overlay shows.
 
     ``backdrop`` is None for a drawn profile, ``fe`` (the tube by finite elements) where it was
-    not verified; ``bent`` is the tube by the formula.
+    not verified; ``bent`` is the tube as what the joints were chosen ``by`` bends it. ``places``
+    are the joints' on the profile, mm.
     """
 
     backdrop: Backdrop | None
     profile: Profile
-    sectors: Sequence[Sector]
+    places: FloatArray
     design: Design
     bends: Sequence[Bend]
+    by: str
     bent: Shape
     straight: Shape
     fe: Shape | None = None
@@ -143,9 +144,9 @@ def _draw_sectors(axes: Any, scene: Scene) -> None:
     """Bending sectors on the drawing: between profile and outer curve, perpendicular to them."""
     profile, diameter = scene.profile, scene.design.tube.outer_diameter_mm
     outer = offset_points(profile, diameter)
-    for k, (sector, joint) in enumerate(zip(scene.sectors, scene.design.joints, strict=True)):
+    for k, (place, joint) in enumerate(zip(scene.places, scene.design.joints, strict=True)):
         half = 0.5 * joint.openF_mm
-        within = np.abs(profile.s - sector.centre) <= half
+        within = np.abs(profile.s - place) <= half
         ring = np.concatenate([profile.points[within], outer[within][::-1]])
         _fill(axes, ring, color=RED, alpha=0.16, lw=0, zorder=3)
         for edge in (np.argmax(within), len(within) - 1 - np.argmax(within[::-1])):
@@ -162,11 +163,11 @@ def _draw_tube(axes: Any, scene: Scene) -> None:
         *_ring(straight).T, color=GREY, lw=1.0, ls=(0, (2, 2)), zorder=4, label="tube at rest"
     )
     if scene.fe is None:
-        _draw_bent(axes, scene, scene.bent, GREEN, f"tube at {pressure:.2f} bar (formula)")
+        _draw_bent(axes, scene, scene.bent, GREEN, f"tube at {pressure:.2f} bar ({scene.by})")
         return
     axes.plot(
         *_ring(scene.bent).T, color=GREEN, lw=1.3, ls=(0, (6, 2)), zorder=5,
-        path_effects=_halo(2.3), label=f"tube at {pressure:.2f} bar (formula)",
+        path_effects=_halo(2.3), label=f"tube at {pressure:.2f} bar ({scene.by})",
     )  # fmt: skip
     _draw_bent(axes, scene, scene.fe, PURPLE, f"tube at {pressure:.2f} bar (finite elements)")
 
@@ -212,8 +213,8 @@ def _draw_joints(axes: Any, scene: Scene) -> None:
     badges = [offset_points(profile, diameter * k) for k in (1.3, 1.65, 0.5, 0.8, 2.0)]
     angles = [offset_points(profile, -diameter * k) for k in (0.35, 0.7, 1.05, 1.4)]
     taken: list[FloatArray] = []
-    for sector, joint in zip(scene.sectors, scene.design.joints, strict=True):
-        at = int(np.searchsorted(profile.s, sector.centre))
+    for place, joint in zip(scene.places, scene.design.joints, strict=True):
+        at = min(int(np.searchsorted(profile.s, place)), len(profile.s) - 1)
         axes.text(
             *_free_place([curve[at] for curve in badges], taken), str(joint.number),
             color="white", fontsize=11, weight="bold", ha="center", va="center", zorder=9,
@@ -277,23 +278,25 @@ def _status(design: Design) -> list[tuple[str, str]]:
     if not design.verified:
         lines.append(("NOT VERIFIED by FE", RED))
     elif off is not None:
-        lines.append((f"verified by FE: {off.rms_mm:.1f} mm RMS off the profile", INK))
+        lines.append((f"verified by FE: {off.rms_mm:.2f} mm RMS off the profile", INK))
     return lines
 
 
 def _facts(design: Design) -> list[str]:
-    tube, source, fit = design.tube, design.source, design.fit.formula
+    tube, source, fit = design.tube, design.source, design.fit
     scale = "" if source.mm_per_px is None else f"  ({source.mm_per_px:.4g} mm per pixel)"
-    off = [("predicted off the profile", fit)]
-    if design.fit.fe is not None:
-        off = [("formula off the profile", fit), ("FE off the profile", design.fit.fe)]
+    off = [("formula off the profile", fit.formula)]
+    if fit.response is not None:
+        off.append(("joint response off the profile", fit.response))
+    if fit.fe is not None:
+        off.append(("FE off the profile", fit.fe))
     return [
         f"operating pressure {design.pressure_bar:.2f} bar",
         f"tube {tube.outer_diameter_mm:g} x {tube.wall_mm:g} mm, {tube.length_mm:.1f} mm long, "
         f"root {tube.root_mm:.1f} mm",
         f"{source.side} side, {source.profile_length_mm:.1f} mm to follow",
         f"scale from {source.scale_source}{scale}",
-        *(f"{by}: {m.rms_mm:.1f} mm RMS, {m.max_mm:.1f} mm at most" for by, m in off),
+        *(f"{by}: {m.rms_mm:.2f} mm RMS, {m.max_mm:.1f} at most" for by, m in off),
     ]
 
 
@@ -312,7 +315,7 @@ def _draw_table(axes: Any, design: Design, y: float) -> float:
         y -= step
         cells = (
             f"{joint.number}", f"{joint.F_mm:.1f}", f"{joint.openF_mm:g}",
-            f"{joint.alpha_closed_deg:g}", f"{joint.alpha_center_deg:g}",
+            f"{joint.alpha_closed_deg:.4g}", f"{joint.alpha_center_deg:g}",
             f"{joint.theta_formula_deg:.1f}",
             *(() if joint.theta_fe_deg is None else (f"{joint.theta_fe_deg:.1f}",)),
         )  # fmt: skip

@@ -21,20 +21,22 @@ def joint_table(design: Design) -> str:
         + ("  FE deg" if fe else ""),
     ]
     lines += [
-        f"{j.number:5d}  {j.F_mm:6.1f}  {j.openF_mm:8g}  {j.alpha_closed_deg:16g}  "
+        f"{j.number:5d}  {j.F_mm:6.1f}  {j.openF_mm:8g}  {j.alpha_closed_deg:16.4g}  "
         f"{j.alpha_center_deg:16g}  {j.theta_target_deg:9.1f}  {j.theta_formula_deg:11.1f}"
         + ("" if j.theta_fe_deg is None or not fe else f"  {j.theta_fe_deg:6.1f}")
         for j in design.joints
     ]
-    lines.append(f"predicted off the profile: {off_text(design.fit.formula)}")
+    lines.append(f"by the formula off the profile:        {off_text(design.fit.formula)}")
+    if design.fit.response is not None:
+        lines.append(f"by the joint response off the profile: {off_text(design.fit.response)}")
     if design.fit.fe is not None:
-        lines.append(f"by FE off the profile:     {off_text(design.fit.fe)}")
+        lines.append(f"by FE off the profile:                 {off_text(design.fit.fe)}")
     return "\n".join(lines) + "\n"
 
 
 def off_text(misfit: Misfit) -> str:
     """Say how far a shape lies off its target."""
-    return f"{misfit.rms_mm:.1f} mm RMS, {misfit.max_mm:.1f} mm at most"
+    return f"{misfit.rms_mm:.2f} mm RMS, {misfit.max_mm:.2f} mm at most"
 
 
 def _counted(joints: int) -> str:

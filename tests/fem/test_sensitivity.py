@@ -74,6 +74,12 @@ def test_against_differences(center: tuple[float, float]) -> None:
     for rate, change in changes:
         check(rate, state(change(1e-3)), state(change(-1e-3)), 1e-3)
 
+    def walled(by: float) -> State:
+        return solve(replace(actuator, wall=actuator.wall + by), [PRESSURE], SIZE).states[-1]
+
+    check(found.wall, walled(1e-3), walled(-1e-3), 1e-3)
+    assert found.wall.theta[0] < 0.0  # a thicker wall, less angle
+
 
 def test_signs() -> None:
     run = solve(two((270.0, 90.0)), [PRESSURE], SIZE)

@@ -1,0 +1,160 @@
+"""What a design is for: the object or drawing, its scale, and the profile to follow."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from profiletool.errors import NoObject, UsageError
+from profiletool.image.load import load_picture
+from profiletool.image.marker import find_markers
+from profiletool.image.scale import ScaleRequest, scale_of
+from profiletool.image.silhouette import find_silhouette
+from profiletool.joints.assign import INTERFERENCE_MM
+from profiletool.profile.side import top_middle
+from profiletool.profile.target import Reach, profile_of_line, profile_of_object
+from profiletool.profile.vector import SUFFIXES, load_vector
+from profiletool.records import Material, Picture, Profile, Scale, Side, Silhouette
+
+Method = Literal["optimal", "paper"]
+
+_WRONG_SCALE = {"height": {"top", "bottom"}, "width": {"left", "right"}}
+
+
+@dataclass(frozen=True)
+class Request:
+    """What `design` was asked for.
+
+    ``tolerance_mm`` None stands for the method's own, ``alpha_step_deg`` None for one thread.
+    """
+
+    file: Path
+    scale: ScaleRequest = field(default_factory=ScaleRequest)
+    side: Side = "left"
+    start_pct: float = 0.0
+    end_pct: float = 100.0
+    clearance_mm: float = 0.0
+    tolerance_mm: float | None = None
+    joints: int | None = None
+    method: Method = "optimal"
+    interference_mm: float = INTERFERENCE_MM
+    base_free: bool = False
+    alpha_step_deg: float | None = None
+    place_step_mm: float = 1.0
+    material: Material = field(default_factory=Material)
+    formula: Path | None = None
+    verify: bool = False
+    refine: bool = True
+
+
+@dataclass(frozen=True)
+class Subject:
+    """The object that a design is for; picture, silhouette and origin only where there is one."""
+
+    picture: Picture | None
+    silhouette: Silhouette | None
+    scale: Scale
+    origin_px: tuple[float, float] | None
+    profile: Profile
+
+
+def find_subject(request: Request, say: Callable[[str], None]) -> Subject:
+    """Read the picture or drawing and find the profile that the tube shall follow.
+
+    Raises
+    ------
+    UnreadableInput, NoScale, NoObject, UsageError
+    """
+    reach = Reach(
+        side=request.side,
+        radius_mm=request.material.radius_mm,
+        clearance_mm=request.clearance_mm,
+        start_pct=request.start_pct,
+        end_pct=request.end_pct,
+    )
+    if request.file.suffix.lower() in SUFFIXES:
+        return _drawn_subject(request, reach, say)
+    picture = load_picture(request.file)
+    markers = find_markers(picture) if request.scale.marker_mm is not None else []
+    silhouette = find_silhouette(picture, ignore=markers)
+    scale = scale_of(picture, silhouette, request.scale)
+    _check_frame(silhouette, scale, request.side)
+    k = scale.mm_per_px
+    origin = top_middle(silhouette.contour_px * [1.0, -1.0]) * [1.0, -1.0]
+    outline = (silhouette.contour_px - origin) * [k, -k]
+    width, height = np.ptp(outline, axis=0)
+    say(
+        f"object: {width:.1f} x {height:.1f} mm, found by {silhouette.method}, "
+        f"{k:.4g} mm per pixel from {scale.source}"
+    )
+    reach = replace(reach, noise_mm=silhouette.noise_px * k, spacing_mm=k)
+    profile = profile_of_object(outline, reach)
+    return Subject(picture, silhouette, scale, (float(origin[0]), float(origin[1])), profile)
+
+
+def _drawn_subject(request: Request, reach: Reach, say: Callable[[str], None]) -> Subject:
+    drawn = load_vector(request.file)
+    make = profile_of_object if drawn.closed else profile_of_line
+    profile = make(drawn.points, reach)
+    kind = "closed outline" if drawn.closed else "open profile"
+    x, y = profile.points[0]
+    say(f"drawing: {kind}, {profile.length_mm:.1f} mm to follow from ({x:.1f}, {y:.1f}) down")
+    return Subject(None, None, Scale(1.0, "vector"), None, profile)
+
+
+def check_request(request: Request) -> None:
+    """Refuse options that no design can be made with."""
+    material = request.material
+    positive = {
+        "--diameter": material.outer_diameter_mm,
+        "--wall": material.wall_mm,
+        "--root": material.root_mm,
+        "--pitch": material.pitch_mm,
+        "--max-pressure": material.max_pressure_bar,
+        "--max-length": material.max_length_mm,
+        "--tolerance": 1.0 if request.tolerance_mm is None else request.tolerance_mm,
+    }
+    for option, value in positive.items():
+        if not (np.isfinite(value) and value > 0.0):
+            raise UsageError(f"{option} must be a number above 0, not {value:g}")
+    for option, value in {
+        "--clearance": request.clearance_mm,
+        "--interference": request.interference_mm,
+        "--alpha-step": request.alpha_step_deg or 0.0,
+        "--place-step": request.place_step_mm,
+    }.items():
+        if not (np.isfinite(value) and value >= 0.0):
+            raise UsageError(f"{option} must be 0 or more, not {value:g}")
+    if material.pitch_mm <= material.thread_mm:
+        raise UsageError(f"--pitch must be more than the thread, {material.thread_mm:g} mm")
+    if material.wall_mm >= material.radius_mm:
+        raise UsageError("--wall must be less than half of --diameter")
+    if not 0.0 <= request.start_pct < request.end_pct <= 100.0:
+        raise UsageError("--from and --to must be percentages with --from below --to")
+
+
+def _check_frame(silhouette: Silhouette, scale: Scale, side: Side) -> None:
+    """Refuse an object that is cut off where it matters."""
+    cut = silhouette.touches & ({side, "top"} | _WRONG_SCALE.get(scale.source, set()))
+    if cut:
+        raise NoObject(
+            f"the object runs out of the frame ({', '.join(sorted(cut))}); "
+            "take a picture with some ground all around it"
+        )
+
+
+def drawing_notes(request: Request, subject: Subject) -> Iterator[str]:
+    """Say what the user should know of how the picture was read."""
+    if subject.silhouette is None:
+        if request.scale != ScaleRequest():
+            yield "a drawing is in mm already: the scale options were not used"
+        return
+    if subject.silhouette.method == "grabcut":
+        yield "the silhouette is a guess on a busy ground: look at it in overlay.png"
+    if subject.silhouette.touches:
+        edges = ", ".join(sorted(subject.silhouette.touches))
+        yield f"the object runs out of the frame ({edges}); the profile ends there"
