@@ -23,7 +23,7 @@ BLOCK_PX = 7
 
 
 def scene_from(file: Path) -> Scene:
-    return scene_of(run(Request(file), lambda line: None))
+    return scene_of(run(Request(file, method="paper"), lambda line: None))
 
 
 def reduced(png: bytes | Path) -> Image.Image:
