@@ -12,6 +12,7 @@ from profiletool.report.fe import theta_csv
 from profiletool.report.files import mask_png, shape_csv
 from profiletool.report.overlay import Scene, backdrop_of, draw_overlay
 from profiletool.report.plots import Mark, draw_theta, draw_trajectories
+from profiletool.report.tradeoff import draw_trade_off, trade_off_csv
 from profiletool.report.vtu import write_pvd, write_vtu
 from profiletool.template.dxf import write_dxf
 from profiletool.template.layout import build_sheet
@@ -33,6 +34,9 @@ def files_of(result: Result) -> dict[str, bytes]:
         "shape.csv": shape_csv(lines),
         "overlay.png": draw_overlay(scene_of(result)),
     }
+    if result.plan.trade_off is not None:
+        files["trade_off.csv"] = trade_off_csv(result.plan.trade_off)
+        files["trade_off.png"] = draw_trade_off(result.plan.trade_off, design)
     if result.subject.silhouette is not None:
         files["mask.png"] = mask_png(result.subject.silhouette.mask)
     if checked is not None and checked.run is not None:
