@@ -16,7 +16,14 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from profiletool.joints.model import Chain
-from profiletool.joints.neighbours import FADING_MM, TERMS, Neighbours, sides_of, terms
+from profiletool.joints.neighbours import (
+    ODD,
+    PARAMETERS,
+    Neighbours,
+    batch,
+    first_guess,
+    log_factors,
+)
 from profiletool.joints.response import Response
 from profiletool.joints.response_table import Axis, Table
 from profiletool.records import FloatArray, Pose, Shape
@@ -25,9 +32,11 @@ BASE = Pose(0.0, 0.0, 0.0)  # all lines begin here, along x ...
 SIGN = -1.0  # ... and the object lies at -y
 _INSIDE = np.array([0.0, 0.2, 0.4, 0.6, 0.75, 0.85, 0.925, 0.97, 1.0])
 _OUTSIDE = np.array([0.15, 0.4, 0.8, 1.3, 2.0, 3.0, 4.5, 6.5, 9.0, 12.0, 16.0, 20.0, 25.0])
-_KINDS = 4  # of neighbours
 _LEAST_FALL = 0.006  # of log theta from one node of alpha to the next
-_RIDGE = 1e-3  # of the samples' weight
+_RIDGE = 0.02  # mm per 100 mm: what a parameter costs that leaves the first guess by 1
+_ROUNDS = 40  # of the fit: it creeps from there
+_LEAST_FACTOR = 0.2
+_LOG_STEP = 0.01
 _EVERY = 4  # of a line's points that count in a fit
 
 
@@ -132,7 +141,7 @@ def tabulate(singles: Sequence[Lines], straight: Lines, tube: FloatArray) -> Tab
         inside=_INSIDE,
         outside=_OUTSIDE,
         wrapped=wrapped,
-        neighbours=Neighbours(np.zeros((_KINDS, len(FADING_MM) * TERMS, 2))),
+        neighbours=Neighbours(np.zeros((0, PARAMETERS))),
         diameter=float(tube[0]),
         wall=float(tube[1]),
         stiffness=float(tube[2]),
@@ -199,29 +208,53 @@ def _distances(shape: Shape, lines: Lines, state: int) -> tuple[FloatArray, Floa
 
 
 def fit_neighbours(
-    runs: Sequence[Lines], factors: Sequence[FloatArray], ridge: float = _RIDGE
+    runs: Sequence[Lines], factors: Sequence[FloatArray], response: Response
 ) -> Neighbours:
-    """Fit the neighbours' influence to the factors found in runs."""
-    rows, kinds, values, weights, owners = [], [], [], [], []
-    count = 0
-    for lines, found in zip(runs, factors, strict=True):
-        n = len(lines.chain.centre)
-        for pressure, both in zip(lines.pressure, found, strict=True):
-            beside = sides_of(lines.chain, float(pressure))
-            rows.append(terms(beside))
-            kinds.append(beside.kind)
-            owners.append(count + np.tile(np.arange(n), 2))
-            values.append(np.log(np.maximum(both, 0.2)))
-            weights.append(np.full(n, float(pressure)))
-            count += n
-    width = len(FADING_MM) * TERMS
-    X = np.zeros((count, _KINDS, width))
-    np.add.at(X, (np.concatenate(owners), np.concatenate(kinds)), np.concatenate(rows))
-    w = np.concatenate(weights)
-    A = X.reshape(count, -1) * w[:, None]
-    normal = A.T @ A + ridge * float(w @ w) * np.eye(A.shape[1])
-    found = np.linalg.solve(normal, A.T @ (np.concatenate(values) * w[:, None]))
-    return Neighbours(found.reshape(_KINDS, width, 2))
+    """Fit the neighbours' influence to the factors found in runs.
+
+    Errors count by what they do to the object-facing line, to first order.
+    """
+    states = [
+        (lines.chain, float(pressure), both)
+        for lines, found in zip(runs, factors, strict=True)
+        for pressure, both in zip(lines.pressure, np.maximum(found, _LEAST_FACTOR), strict=True)
+    ]
+    chains = batch([chain for chain, _, _ in states], [pressure for _, pressure, _ in states])
+    count, most = chains.real.shape
+    wanted, weight = np.zeros((count, most, 2)), np.zeros((count, 2 * most, 2 * most))
+    for k, (chain, pressure, both) in enumerate(states):
+        n = len(chain.centre)
+        wanted[k, :n] = np.log(both)
+        weight[k, : 2 * n, : 2 * n] = _sensitivity(chain, pressure, both, response)
+    weight /= np.sqrt(count)
+    start = first_guess().ravel()
+
+    def off(x: FloatArray) -> FloatArray:
+        miss = log_factors(x.reshape(len(ODD), -1), chains) - wanted
+        miss = (weight @ miss.reshape(count, -1, 1)).ravel()
+        return np.concatenate([miss, _RIDGE * (x - start)])
+
+    found = least_squares(off, start, max_nfev=_ROUNDS).x
+    return Neighbours(found.reshape(len(ODD), -1))
+
+
+def _sensitivity(
+    chain: Chain, pressure: float, factors: FloatArray, response: Response
+) -> FloatArray:
+    """Triangle whose product with errors of log factors has the line's RMS as its norm.
+
+    In mm per 100 mm of tube; (2 n, 2 n) for n joints, their turns and stretches by turns.
+    """
+    base = response.shape_by(factors, chain, pressure, BASE, SIGN).facing
+    columns = []
+    for k in range(factors.size):
+        moved = factors.copy()
+        moved.flat[k] *= np.exp(_LOG_STEP)
+        line = response.shape_by(moved, chain, pressure, BASE, SIGN).facing
+        columns.append((line - base).ravel() / _LOG_STEP)
+    per_point = np.array(columns).T / (np.sqrt(len(base)) * chain.length / 100.0)
+    _, triangle = np.linalg.qr(per_point)
+    return triangle
 
 
 def check(runs: Sequence[Lines], response: Response) -> Error:

@@ -10,14 +10,17 @@ integrated along the tube.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from profiletool.joints.model import Chain
 from profiletool.joints.neighbours import PLUG_MM
 from profiletool.joints.response_table import Table, shipped
 from profiletool.records import FloatArray, Pose, Shape
+
+Values = TypeVar("Values", FloatArray, NDArray[np.complex128])
 
 STEP_MM = 0.5  # spacing of a shape's points on the straight tube
 _END_MM = 1.0  # how soon the tube takes its height behind the clamped end
@@ -143,11 +146,11 @@ class Response:
         """
         o, p = self._own(openF, pressure)
         table = self.table
-        half = table.places(float(o))
-        z = np.concatenate([-half[:0:-1], half])
-        scale = np.array([[sense], [1.0], [sense], [1.0]]) * self.theta(openF, alpha, pressure)
-        fields = scale * table.fields_of(np.array([alpha]), o[None], float(p))[0]
-        turn, stretch, shift, growth = _mirrored(fields)
+        z = _mirrored(table.places(o[None]), -1.0)[0]
+        theta, over = table.joints(np.array([alpha]), o[None], float(p))
+        fields = np.array([[sense], [1.0], [sense], [1.0]]) * theta[0] * over[0]
+        turn, stretch = _mirrored(fields[:2], -1.0)
+        shift, growth = _mirrored(fields[2:], 1.0)
         turn = turn - turn[0]
         centre = _integrate(turn, np.diff(z) + np.diff(stretch), np.diff(shift))
         height = 0.5 * (table.diameter + growth - growth[0])
@@ -206,19 +209,15 @@ class Response:
         turned += 1j * stretch * inside
         grown += 1j * growth * np.maximum(held, 0.0)
         if len(chain.centre):
-            rates = table.log_rates(chain.openF, pressure)
-            weights = table.alpha.weights(chain.alpha)
-            theta = pressure * np.exp(np.sum(weights * rates, axis=1))
+            theta, fields = table.joints(chain.alpha, chain.openF, pressure)
             scale = theta[:, None] * factors
-            fields = table.fields_of(chain.alpha, chain.openF, pressure)
             bent = (chain.sense * scale[:, 0])[:, None]
-            odd = bent * fields[:, 0] + 1j * scale[:, 1:] * fields[:, 1]
-            even = bent * fields[:, 2] + 1j * scale[:, :1] * fields[:, 3]
-            for k, centre in enumerate(chain.centre):
-                half = table.places(float(chain.openF[k]))
-                z = np.concatenate([centre - half[:0:-1], centre + half])
-                turned += np.interp(along, z, np.concatenate([-odd[k, :0:-1], odd[k]]))
-                grown += np.interp(along, z, np.concatenate([even[k, :0:-1], even[k]]))
+            odd = _mirrored(bent * fields[:, 0] + 1j * scale[:, 1:] * fields[:, 1], -1.0)
+            even = _mirrored(bent * fields[:, 2] + 1j * scale[:, :1] * fields[:, 3], 1.0)
+            places = chain.centre[:, None] + _mirrored(table.places(chain.openF), -1.0)
+            for z, turning, growing in zip(places, odd, even, strict=True):
+                turned += np.interp(along, z, turning)
+                grown += np.interp(along, z, growing)
         return np.array([turned.real, turned.imag, grown.real, grown.imag])
 
     def _own(self, openF: ArrayLike, pressure: ArrayLike) -> tuple[FloatArray, FloatArray]:
@@ -239,10 +238,9 @@ def _range(nodes: FloatArray, scale: float) -> tuple[float, float]:
     return float(nodes[0]) * scale, float(nodes[-1]) * scale
 
 
-def _mirrored(fields: FloatArray) -> FloatArray:
-    """Extend fields of half a joint, (4, M), over the whole of it: (4, 2 M - 1)."""
-    parity = np.array([[-1.0], [-1.0], [1.0], [1.0]])
-    return np.concatenate([parity * fields[:, :0:-1], fields], axis=1)
+def _mirrored(half: Values, parity: float) -> Values:
+    """Extend fields of half a joint, (n, M), over the whole of it: (n, 2 M - 1)."""
+    return np.concatenate([parity * half[:, :0:-1], half], axis=1)
 
 
 def _integrate(turn: FloatArray, length: FloatArray, shift: FloatArray) -> FloatArray:

@@ -64,7 +64,7 @@ class Axis:
 
     def _at(self, x: ArrayLike) -> tuple[FloatArray, FloatArray]:
         at = np.asarray(x, dtype=float)
-        piece = np.clip(np.searchsorted(self.nodes, at, side="right") - 1, 0, len(self.nodes) - 2)
+        piece = np.searchsorted(self.nodes[1:-1], at, side="right")
         return self.pieces[:, piece], (at - self.nodes[piece])[..., None]
 
 
@@ -108,9 +108,10 @@ class Table:
     stiffness: float
     about: dict[str, Any]
 
-    def places(self, openF: float) -> FloatArray:
-        """Where half a joint is tabulated, from its middle: (M,) mm."""
-        return np.concatenate([0.5 * openF * self.inside, 0.5 * openF + self.outside])
+    def places(self, openF: FloatArray) -> FloatArray:
+        """Where halves of n joints are tabulated, from their middles: (n, M) mm."""
+        half = 0.5 * openF[:, None]
+        return np.concatenate([half * self.inside, half + self.outside], axis=1)
 
     def log_rates(self, openF: ArrayLike, pressure: ArrayLike) -> FloatArray:
         """Logarithm of theta / pressure at the nodes of alpha; arguments broadcast: (..., A)."""
@@ -122,12 +123,16 @@ class Table:
         rates: FloatArray = flat @ self.log_rate.reshape(len(self.log_rate), -1).T
         return rates
 
-    def fields_of(self, alpha: FloatArray, openF: FloatArray, pressure: float) -> FloatArray:
-        """Fields of n joints at one pressure, over theta: (n, 4, M)."""
-        _, _, Q, kinds, M = self.fields.shape
-        weights = self.alpha.weights(alpha)[:, :, None] * self.openF.weights(openF)[:, None, :]
+    def joints(
+        self, alpha: FloatArray, openF: FloatArray, pressure: float
+    ) -> tuple[FloatArray, FloatArray]:
+        """Angle of n joints alone at one pressure, and their fields over it: (n,), (n, 4, M)."""
+        many, few, Q, kinds, M = self.fields.shape
+        grid = self.alpha.weights(alpha)[:, :, None] * self.openF.weights(openF)[:, None, :]
+        grid = grid.reshape(len(grid), many * few)
+        rates = self.log_rate.reshape(many * few, -1) @ self.pressure.weights(pressure)
         at = self.coarse.weights(pressure) @ self.fields.reshape(-1, Q, kinds * M)
-        return (weights.reshape(len(weights), -1) @ at).reshape(-1, kinds, M)
+        return pressure * np.exp(grid @ rates), (grid @ at).reshape(-1, kinds, M)
 
     def save(self, file: IO[bytes]) -> None:
         """Write the table as an npz file."""
@@ -137,7 +142,7 @@ class Table:
             "inside": self.inside,
             "outside": self.outside,
             "wrapped": self.wrapped,
-            "coefficients": self.neighbours.coefficients,
+            "modes": self.neighbours.modes,
         }
         single: dict[str, Any] = {name: v.astype(np.float32) for name, v in kept.items()}
         np.savez_compressed(
@@ -168,7 +173,7 @@ class Table:
             inside=values["inside"],
             outside=values["outside"],
             wrapped=values["wrapped"],
-            neighbours=Neighbours(values["coefficients"]),
+            neighbours=Neighbours(values["modes"]),
             diameter=float(diameter),
             wall=float(wall),
             stiffness=float(stiffness),
