@@ -30,7 +30,7 @@ S = TypeVar("S")
 
 _REACH, _SHORTEST = 3.0, 0.1  # steps over the scale; the share of that below which it gives up
 _MOST_FREE, _MOST_BUILT = 5, 5
-_WORTH = 0.9  # of the badness: a free step that brings less is the last one
+_WORTH = 0.9  # of the badness: a step that promises less is not taken
 _SPARE_MM = 0.5  # how far the tube goes on beyond the profile's end
 
 
@@ -159,6 +159,8 @@ class _Loop(Generic[S]):
             if model is None:
                 model = self._model(best)
             target = free_step(model, share * _REACH * model.scale)
+            if self._promised(model, target) > _WORTH * self._worth(best):
+                break
             trial = self._tried(best, target, "all numbers free")
             gain = np.inf if trial is None else self._worth(trial) / self._worth(best)
             if trial is not None and gain < 1.0:
@@ -182,6 +184,8 @@ class _Loop(Generic[S]):
             target = built_step(model, step, _REACH * model.scale)
             if any(np.allclose(target, other, atol=1e-9) for other in tried):
                 break
+            if found is not None and self._promised(model, target) > _WORTH * self._worth(found):
+                break
             tried.append(target)
             trial = self._tried(best, target, "in steps that can be built")
             if trial is None:
@@ -192,6 +196,9 @@ class _Loop(Generic[S]):
             else:
                 model = taught(model, target, trial.feet.gap)
         return best if found is None else found
+
+    def _promised(self, model: Linear, vector: FloatArray) -> float:
+        return float(badness(model.predicted(vector), self._interference))
 
     def _worth(self, trial: Trial[S]) -> float:
         return float(badness(trial.feet.gap, self._interference))

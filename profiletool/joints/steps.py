@@ -19,8 +19,9 @@ from profiletool.records import FloatArray
 BoolArray = NDArray[np.bool_]
 
 _WEIGHT = 4.0  # of depth inside the object beyond what is allowed, against distance
-_DAMPING = 1e-3  # mm for a change by the scale: what moves nothing stays where it is,
-_BUILT_DAMPING = 0.05  # and what can be built is looked for nearby, where the model holds
+# mm for a change by the scale: what moves nothing stays where it is, and all is looked for
+# nearby, where the model holds.
+_DAMPING, _BUILT_DAMPING = 0.1, 0.05
 _ROUNDS = 30
 
 

@@ -228,8 +228,9 @@ def _draw_joints(axes: Any, scene: Scene) -> None:
 
 
 def _theta(joint: Joint) -> float:
-    """Give the angle that is the more believable one."""
-    return joint.theta_formula_deg if joint.theta_fe_deg is None else joint.theta_fe_deg
+    """Give the angle that is the most believable one."""
+    known = (joint.theta_fe_deg, joint.theta_response_deg, joint.theta_formula_deg)
+    return next(theta for theta in known if theta is not None)
 
 
 def _free_place(places: Sequence[FloatArray], taken: list[FloatArray]) -> FloatArray:
@@ -316,8 +317,8 @@ def _draw_table(axes: Any, design: Design, y: float) -> float:
         cells = (
             f"{joint.number}", f"{joint.F_mm:.1f}", f"{joint.openF_mm:g}",
             f"{joint.alpha_closed_deg:.4g}", f"{joint.alpha_center_deg:g}",
-            f"{joint.theta_formula_deg:.1f}",
-            *(() if joint.theta_fe_deg is None else (f"{joint.theta_fe_deg:.1f}",)),
+            *((f"{joint.theta_formula_deg:.1f}",) if design.verified else ()),
+            f"{_theta(joint):.1f}",
         )  # fmt: skip
         for x, cell in zip(columns, cells, strict=True):
             axes.text(x, y, cell, fontsize=10, color=INK, ha="center", va="center")

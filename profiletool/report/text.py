@@ -13,17 +13,21 @@ _COLUMNS = ("pressure_bar", "openF_mm", "alpha_closed_deg", "theta_deg")
 
 def joint_table(design: Design) -> str:
     """Lay out the joints of a design as the paper's Table 5."""
-    fe = design.verified
+    extra = [("formula deg", "theta_formula_deg")]
+    if any(j.theta_response_deg is not None for j in design.joints):
+        extra.append(("response deg", "theta_response_deg"))
+    if design.verified:
+        extra.append(("FE deg", "theta_fe_deg"))
     lines = [
         f"{design.source.file}: {_counted(len(design.joints))} at {design.pressure_bar:.2f} bar, "
         f"tube {design.tube.length_mm:.1f} mm long, root {design.tube.root_mm:.1f} mm",
-        "joint    F mm  openF mm  alpha_closed deg  alpha_center deg  theta deg  formula deg"
-        + ("  FE deg" if fe else ""),
+        "joint    F mm  openF mm  alpha_closed deg  alpha_center deg  theta deg"
+        + "".join(f"  {head}" for head, _ in extra),
     ]
     lines += [
         f"{j.number:5d}  {j.F_mm:6.1f}  {j.openF_mm:8g}  {j.alpha_closed_deg:16.4g}  "
-        f"{j.alpha_center_deg:16g}  {j.theta_target_deg:9.1f}  {j.theta_formula_deg:11.1f}"
-        + ("" if j.theta_fe_deg is None or not fe else f"  {j.theta_fe_deg:6.1f}")
+        f"{j.alpha_center_deg:16g}  {j.theta_target_deg:9.1f}"
+        + "".join(f"  {getattr(j, name):{len(head)}.1f}" for head, name in extra)
         for j in design.joints
     ]
     lines.append(f"by the formula off the profile:        {off_text(design.fit.formula)}")

@@ -10,11 +10,11 @@ from matplotlib.figure import Figure
 
 from profiletool.joints.optimal import TradeOff
 from profiletool.records import Design
-from profiletool.report.palette import BLUE, GREEN, INK, PURPLE, RED, SKY, YELLOW
+from profiletool.report.palette import BLUE, GREEN, GREY, INK, PURPLE, RED, SKY
 
 _BAR = 10.0  # in a MPa
 _DPI = 120
-_COLOURS = (BLUE, RED, GREEN, PURPLE, SKY, YELLOW)
+_COLOURS = (BLUE, RED, GREEN, PURPLE, SKY, GREY)
 _SHOWN = 6  # numbers of joints drawn against pressure
 
 
@@ -64,6 +64,9 @@ def draw_trade_off(found: TradeOff, design: Design) -> bytes:
     for axes in (left, right):
         axes.set_ylabel("RMS distance to the profile (mm)")
         axes.set_yscale("log")
+        for ticks in (axes.yaxis.set_major_formatter, axes.yaxis.set_minor_formatter):
+            ticks("{x:g}")
+        axes.tick_params(axis="y", which="minor", labelsize=7)
         axes.grid(visible=True, which="both", alpha=0.25)
         axes.legend(fontsize=8, frameon=False)
     buffer = io.BytesIO()
