@@ -11,20 +11,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from formula.errors import OutOfRange
 from profiletool.errors import NoObject
-from profiletool.joints.assign import END_WRAP_MM, INTERFERENCE_MM, wrap_mm
+from profiletool.joints.allowed import cuts_of, limits_of
+from profiletool.joints.assign import INTERFERENCE_MM
 from profiletool.joints.lines import Discretisation
 from profiletool.joints.model import Chain, Model
 from profiletool.joints.parameters import Actuator, Limits
 from profiletool.joints.pieces import cross, direction
-from profiletool.joints.polish import Goal, Polished, at_bound, goal_of, polish
+from profiletool.joints.polish import Goal, Polished, at_bound, goal_of, judge, polish
 from profiletool.joints.search import MOST_JOINTS, Found, search
 from profiletool.records import FloatArray, Material, Misfit, Pose, Profile, Shape
 
 TOLERANCE_MM = 0.25
-BASE_TURN_RAD, BASE_OFFSET_MM = float(np.radians(15.0)), 3.0
-BAR_PER_MPA = 10.0
 DEPTH_SLACK_MM = 0.1  # beyond the interference, that nobody can see
 
 FINE = Discretisation()
@@ -47,6 +45,8 @@ _WORTH = 0.1  # of the tolerance: what one more joint must bring
 _RIVALS = 2  # paths polished for one number of joints
 _MOST_POLISHED = 7  # numbers of joints that are polished
 _SWAPS = 3
+_CUTS = 3  # times that a profile too long for the tube is shortened
+_SHORTEST_MM = 40.0
 
 
 @dataclass(frozen=True)
@@ -106,39 +106,6 @@ class Choice:
     limits: Limits
 
 
-def limits_of(model: Model, material: Material, base_free: bool = False) -> Limits:
-    """Say what the tube, the gauze and the model allow."""
-    low, high = model.pressure
-    return Limits(
-        alpha=model.alpha,
-        pressure=(low, max(min(high, material.max_pressure_bar / BAR_PER_MPA), low)),
-        wrap_mm=wrap_mm(material),
-        end_mm=END_WRAP_MM,
-        root_mm=material.root_mm,
-        max_length_mm=material.max_length_mm,
-        base_turn_rad=BASE_TURN_RAD if base_free else 0.0,
-        base_offset_mm=BASE_OFFSET_MM if base_free else 0.0,
-    )
-
-
-def cuts_of(model: Model, material: Material) -> FloatArray:
-    """Give the cuts in whole meshes that the model holds for, mm.
-
-    Raises
-    ------
-    formula.errors.OutOfRange
-        When there is none.
-    """
-    (low, high), pitch = model.openF, material.pitch_mm
-    cuts = np.arange(np.ceil(low / pitch - 1e-9), np.floor(high / pitch + 1e-9) + 1.0) * pitch
-    if cuts.size == 0:
-        raise OutOfRange(
-            f"no whole number of {pitch:g} mm meshes lies within the {low:g} to {high:g} mm of "
-            "openF that the joints are known for"
-        )
-    return np.asarray(cuts, dtype=float)
-
-
 def choose(profile: Profile, model: Model, material: Material, wish: Wish | None = None) -> Choice:
     """Choose number, places, senses, cuts and sectors of the joints, pressure and base.
 
@@ -164,16 +131,40 @@ def choose(profile: Profile, model: Model, material: Material, wish: Wish | None
             "take another --side or stretch, or a smaller --tolerance"
         )
     limits, cuts = limits_of(model, material, wish.base_free), cuts_of(model, material)
-    goal = goal_of(profile, limits, wish.interference_mm)
-    found = _searches(profile, model, cuts, limits, wish)
-    best, polished = _fewest(found, model, goal, wish)
+    reached = profile
+    for _ in range(_CUTS):
+        # What lies farther down than the tube can be long is out of reach whatever it does.
+        reached = _first_part(reached, limits.max_length_mm)
+        found = _searches(reached, model, cuts, limits, wish)
+        goal = goal_of(reached, limits, wish.interference_mm)
+        best, polished = _fewest(found, model, goal, wish)
+        excess = best.actuator.chain.length - limits.max_length_mm
+        if excess <= 0.0:
+            break
+        reached = _first_part(reached, max(reached.length_mm - excess - 1.0, _SHORTEST_MM))
     best = _swapped(best, model, goal, cuts)
     count = len(best.actuator.chain.openF)
-    polished[count - 1] = min(polished[count - 1], best.misfit.rms_mm)
+    polished[count - 1] = np.fmin(polished[count - 1], best.misfit.rms_mm)
     at = best.actuator
-    trade_off = TradeOff(found[0].pressure, _rms(found, profile), polished)
+    trade_off = TradeOff(found[0].pressure, _rms(found, reached), polished)
+    if reached is not profile:
+        best = judge(at, model, goal_of(profile, limits, wish.interference_mm))
     return Choice(
         at.chain, at.pressure, at.pose, best.shape, best.misfit, best.depth, trade_off, limits
+    )
+
+
+def _first_part(profile: Profile, length: float) -> Profile:
+    """Cut a profile off at an arc length."""
+    if profile.length_mm <= length:
+        return profile
+    kept = slice(0, int(np.searchsorted(profile.s, length)))
+    return replace(
+        profile,
+        **{
+            name: getattr(profile, name)[kept]
+            for name in ("points", "s", "heading", "curvature", "bridged")
+        },
     )
 
 

@@ -109,7 +109,7 @@ def cut_end(actuator: Actuator, model: Model, goal: Goal) -> Actuator:
     tip, before = shape.facing[-1], shape.facing[-2]
     along = (tip - before) / np.hypot(*(tip - before))
     reached = longest + float((goal.points[-1] - tip) @ along)
-    length = max(min(reached, limits.max_length_mm), edge + limits.end_mm)
+    length: float = max(min(reached, limits.max_length_mm), edge + limits.end_mm)
     chain = Chain(chain.centre, chain.openF, chain.alpha, chain.sense, length)
     return Actuator(chain, actuator.pressure, actuator.pose)
 

@@ -112,7 +112,7 @@ class Found:
         centre = root + np.concatenate([[0.0], np.cumsum(F)])
         lines, last = self.lines, steps[-1].end
         goal = int(np.flatnonzero(lines.weight)[-1])
-        end = after[-1] - reach[-1] + float(lines.along[last, goal])
+        end = float(after[-1] - reach[-1] + lines.along[last, goal])
         length = float(centre[-1]) + 0.5 * float(openF[-1]) + max(end, limits.end_mm)
         heading = float(profile.heading[0]) + profile.sign * float(lines.turn[steps[0].start])
         along, _ = base_axes(heading, profile.sign)
