@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from profiletool.errors import NoObject
-from profiletool.joints.allowed import cuts_of, limits_of
+from profiletool.errors import Infeasible, NoObject
+from profiletool.joints.allowed import BAR_PER_MPA, cuts_of, limits_of
 from profiletool.joints.assign import INTERFERENCE_MM
 from profiletool.joints.lines import Discretisation
 from profiletool.joints.model import Chain, Model
@@ -42,7 +42,9 @@ FAR = Discretisation(
 _FAR_MM = 3.0
 _HOPEFUL = 3.0  # a path this many times the tolerance off may be polished into it
 _WORTH = 0.1  # of the tolerance: what one more joint must bring
-_RIVALS = 2  # paths polished for one number of joints
+_RIVALS = 3  # paths polished for one number of joints
+_RUNS, _QUICK = 12, 4  # steps of a polish, and of one that only tells whether it is worth it
+_NEAR = 1.3  # times the tolerance, after a quick polish: worth a long one
 _MOST_POLISHED = 7  # numbers of joints that are polished
 _SWAPS = 3
 _CUTS = 3  # times that a profile too long for the tube is shortened
@@ -120,6 +122,8 @@ def choose(profile: Profile, model: Model, material: Material, wish: Wish | None
     ------
     profiletool.errors.NoObject
         When the profile is straight.
+    profiletool.errors.Infeasible
+        When no joints follow it even roughly.
     formula.errors.OutOfRange
         When no cut in whole meshes is known to the model.
     """
@@ -179,6 +183,11 @@ def _searches(
         rms = _rms(found, profile)
         if (rms[:, -1] if wish.count else rms).min() <= enough:
             break
+    if not np.isfinite(rms).any():
+        raise Infeasible(
+            f"no joints of this tube follow the profile at {BAR_PER_MPA * limits.pressure[1]:.2f} "
+            "bar: it turns too fast; take a longer cut, more pressure or another stretch"
+        )
     return found
 
 
@@ -201,22 +210,26 @@ def _fewest(
     """
     rms = _rms(found, goal.profile).min(axis=0)
     polished = np.full(len(rms), np.nan)
-    least = float(rms.min())
+    least, worth = float(rms.min()), _WORTH * wish.tolerance_mm
     if wish.count is not None:
         numbers = np.array([_known(rms, wish.count)])
     else:
         hopeful = rms <= max(_HOPEFUL * wish.tolerance_mm, 1.5 * least)
-        useful = np.arange(len(rms)) <= np.argmin(rms + 0.1 * _WORTH * wish.tolerance_mm)
+        useful = np.arange(len(rms)) <= np.argmin(rms + 0.1 * worth * np.arange(len(rms)))
         numbers = np.flatnonzero(hopeful & useful)[:_MOST_POLISHED] + 1
     best: dict[int, Polished] = {}
-    for n in numbers:
-        best[int(n)] = _best_of(found, model, goal, int(n))
-        polished[n - 1] = best[int(n)].misfit.rms_mm
-        if good(best[int(n)], wish):
-            return best[int(n)], polished
-    worth = _WORTH * wish.tolerance_mm
+    for n in (int(n) for n in numbers):
+        best[n] = _best_of(found, model, goal, n, rivals=1, runs=_QUICK)
+        near = best[n].misfit.rms_mm <= _NEAR * wish.tolerance_mm
+        if near:
+            best[n] = _best_of(found, model, goal, n, _RIVALS)
+        polished[n - 1] = best[n].misfit.rms_mm
+        if near and good(best[n], wish):
+            return best[n], polished
     chosen = min(best, key=lambda n: _score(best[n], goal) + worth * n)
-    return best[chosen], polished
+    full = _best_of(found, model, goal, chosen, _RIVALS)
+    polished[chosen - 1] = full.misfit.rms_mm
+    return full, polished
 
 
 def _known(rms: FloatArray, count: int) -> int:
@@ -236,15 +249,15 @@ def _score(found: Polished, goal: Goal) -> float:
     return found.misfit.rms_mm + 0.1 * max(found.depth - goal.interference, 0.0)
 
 
-def _best_of(found: list[Found], model: Model, goal: Goal, joints: int) -> Polished:
-    """Polish the best paths of so many joints, of every search at its best pressures."""
+def _best_of(
+    found: list[Found], model: Model, goal: Goal, joints: int, rivals: int, runs: int = _RUNS
+) -> Polished:
+    """Polish the best paths of so many joints, of all searches and pressures."""
+    cost = [(c, k, p) for k, one in enumerate(found) for p, c in enumerate(one.cost[:, joints - 1])]
     tried = []
-    for one in found:
-        cost = one.cost[:, joints - 1]
-        order = [int(p) for p in np.argsort(cost, kind="stable")[:_RIVALS] if np.isfinite(cost[p])]
-        for pressure in order:
-            start = one.actuator(pressure, joints, model, goal.profile, goal.limits)
-            tried.append(polish(start, model, goal))
+    for _, k, pressure in sorted(c for c in cost if np.isfinite(c[0]))[:rivals]:
+        start = found[k].actuator(pressure, joints, model, goal.profile, goal.limits)
+        tried.append(polish(start, model, goal, runs))
     return min(tried, key=lambda polished: _score(polished, goal))
 
 
@@ -260,7 +273,7 @@ def _swapped(best: Polished, model: Model, goal: Goal, cuts: FloatArray) -> Poli
                 openF = chain.openF.copy()
                 openF[k] = cuts[index]
                 actuator = replace(best.actuator, chain=replace(chain, openF=openF))
-                tried.append(polish(_fitting(actuator, goal.limits), model, goal))
+                tried.append(polish(_fitting(actuator, goal.limits), model, goal, _QUICK))
         better = min(tried, key=lambda polished: _score(polished, goal), default=best)
         if _score(better, goal) >= _score(best, goal) - 1e-6:
             break
