@@ -110,12 +110,18 @@ def free_step(
 
 
 def built_step(model: Linear, step: FloatArray, reach: FloatArray) -> FloatArray:
-    """Best vector (q,) whose numbers are multiples of ``step`` (q,); 0 leaves a number free."""
+    """Best vector (q,) whose numbers are multiples of ``step`` (q,); 0 leaves a number free.
+
+    Those with coarse steps stay within one step of where the model holds best, its own vector.
+    """
     discrete = step > 0.0
+    reach = np.where(step > 0.5 * model.scale, np.minimum(step, reach), reach)
     if not discrete.any():
         return free_step(model, reach)
     size = np.where(discrete, step, 1.0)
     low, high = np.ceil(model.low / size - 1e-9), np.floor(model.high / size + 1e-9)
+    low = np.clip(np.ceil((model.vector - reach) / size - 1e-9), low, high)
+    high = np.clip(np.floor((model.vector + reach) / size + 1e-9), low, high)
     strength = np.linalg.norm(model.jacobian, axis=0) * size
     held = np.zeros(len(step), dtype=bool)
     found = free_step(model, reach, damping_mm=_BUILT_DAMPING)
