@@ -217,9 +217,9 @@ def threads(mesh: Mesh, x: FloatArray) -> Gauze:
     )
 
 
-def largest_stretch(mesh: Mesh, x: FloatArray) -> float:
-    """Largest principal stretch of the rubber at any Gauss point."""
-    worst, c = 0.0, mesh.around
+def stretches(mesh: Mesh, x: FloatArray) -> FloatArray:
+    """Largest principal stretch of the rubber at any Gauss point of each layer: (layers,)."""
+    worst, c = np.zeros(mesh.layers), mesh.around
     first = np.arange(mesh.layers) * (mesh.ring + mesh.mid)
     for deep, brick in enumerate(mesh.brick):
         nodes = mesh.bricks[deep * c : (deep + 1) * c, :, None] + first
@@ -227,5 +227,5 @@ def largest_stretch(mesh: Mesh, x: FloatArray) -> float:
         F = gradient.reshape(3, c, 3, -1, mesh.layers)
         F[:, :, 2] *= 2.0 / mesh.heights
         C = np.einsum("kciql,kcjql->cqlij", F, F)
-        worst = max(worst, float(np.linalg.eigvalsh(C)[..., 2].max()))
-    return float(np.sqrt(worst))
+        worst = np.maximum(worst, np.linalg.eigvalsh(C)[..., 2].max(axis=(0, 1)))
+    return np.asarray(np.sqrt(worst))

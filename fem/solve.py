@@ -45,8 +45,8 @@ class State:
         Unbalanced forces over the pressure's.
     least_J : float
         Smallest determinant of F.
-    largest_stretch : float
-        Largest principal stretch of the rubber at any Gauss point.
+    stretches : (layers,)
+        Largest principal stretch of the rubber at any Gauss point of each layer.
     touches : bool
         Whether the tube's surface meets itself; the model has no contact.
     x : (layers + 1, ring + mid, 3) mm
@@ -63,9 +63,14 @@ class State:
     work: float
     residual: float
     least_J: float
-    largest_stretch: float
+    stretches: FloatArray
     touches: bool
     x: FloatArray
+
+    @property
+    def largest_stretch(self) -> float:
+        """Largest principal stretch of the rubber anywhere."""
+        return float(self.stretches.max())
 
     @property
     def energy_error(self) -> float:
@@ -308,7 +313,7 @@ def _state(mesh: Mesh, found: Equilibrium, work: float) -> State:
         work=twice * work,
         residual=found.residual,
         least_J=forces.least_J,
-        largest_stretch=measure.largest_stretch(mesh, x),
+        stretches=measure.stretches(mesh, x),
         touches=measure.touches(mesh, x),
         x=x,
     )

@@ -127,4 +127,5 @@ def scene_of(result: Result) -> Scene:
         plan.bent,
         straight,
         result.check.shape if result.check is not None else None,
+        tuple((place.start, place.end) for place in result.misses),
     )

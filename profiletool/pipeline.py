@@ -21,8 +21,17 @@ from profiletool.joints.limits import (
     polygon_warnings,
     shape_warnings,
     warnings,
+    wear,
 )
-from profiletool.plan import PAPER_TOLERANCE_MM, Plan, not_good, optimal_plan, paper_plan
+from profiletool.joints.reach import Missed
+from profiletool.plan import (
+    PAPER_TOLERANCE_MM,
+    Plan,
+    misses,
+    not_good,
+    optimal_plan,
+    paper_plan,
+)
 from profiletool.records import (
     Design,
     Fit,
@@ -47,6 +56,7 @@ class Result:
 
     ``reasons`` say why it is infeasible; none where it is feasible. ``shape`` is the tube as the
     formula bends it. ``check`` is its finite-element run; None where none was asked for.
+    ``misses`` are the stretches of the profile that the shape is far off.
     """
 
     design: Design
@@ -55,6 +65,7 @@ class Result:
     plan: Plan
     shape: Shape
     check: Check | None
+    misses: tuple[Missed, ...]
 
 
 def run(request: Request, say: Callable[[str], None], progress: Progress | None = None) -> Result:
@@ -85,11 +96,13 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
     checked = _verified(design, profile, say, progress) if request.verify else None
     if checked is not None:
         design = checked.design
+    known = (checked.shape if checked is not None else None) or plan.bent
+    places = misses(plan, known, profile, request)
     reasons = plan.reasons
     if request.method == "optimal":
-        reasons = (*reasons, *not_good(plan, design, profile, request))
-    known = (checked.shape if checked is not None else None) or plan.bent
-    notes = [*reasons, *plan.notes, *drawing_notes(request, subject)]
+        reasons = (*reasons, *not_good(design, profile, request, places))
+    apart = [place.reason for place in places if place.reason not in reasons]
+    notes = [*reasons, *apart, *plan.notes, *drawing_notes(request, subject)]
     notes += _method_notes(request, plan, design, profile, formula)
     notes += disagreement(design.joints, design.pressure_bar)
     notes += shape_warnings(known, profile, request.tolerance_mm or DEPTH_MM)
@@ -98,7 +111,7 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
     if checked is not None and checked.run is not None and checked.shape is not None:
         design = replace(design, sensitivity=sensitivity_of(design, checked.run, profile))
     design = replace(design, feasible=not reasons, warnings=tuple(notes))
-    return Result(design, reasons, subject, plan, shape, checked)
+    return Result(design, reasons, subject, plan, shape, checked, places)
 
 
 def _method_notes(
@@ -180,8 +193,8 @@ def _fe_notes(checked: Check | None) -> Iterator[str]:
         yield "NOT VERIFIED: no finite-element run has checked this design"
     elif checked.failure is not None:
         yield f"NOT VERIFIED: finite elements: {checked.failure}"
-    elif checked.run is not None and checked.run.verification.last.touches:
-        yield "by FE the bent tube touches itself; the model lets it pass through"
+    elif checked.run is not None:
+        yield from wear(checked.run.verification.last, checked.design)
 
 
 def _gauze_notes(layout: Layout, gauze: Gauze) -> Iterator[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,6 +18,7 @@ from profiletool.joints.limits import shortfalls
 from profiletool.joints.model import Chain, Model
 from profiletool.joints.optimal import TOLERANCE_MM, Choice, TradeOff, Wish, choose
 from profiletool.joints.parameters import Actuator, parameters_of
+from profiletool.joints.reach import Missed, missed
 from profiletool.joints.response import Response
 from profiletool.joints.sectors import Sector, discretise
 from profiletool.records import (
@@ -37,6 +38,7 @@ PAPER_TOLERANCE_MM = 1.0
 GOOD_SHARE = 0.01  # of the profile's length: RMS of a shape that is called good
 _PRESSURE_STEP = 0.001  # MPa: what a gauge can be set to
 _BAR = 10.0  # in a MPa
+_SLACK_MM = 0.05  # that nobody can see
 _AGAIN = 0.97  # of the pressure that a tube stands, where it does not stand the one asked
 
 
@@ -59,6 +61,7 @@ class Plan:
     sectors : tuple of Sector
         Of the paper's method; empty for the other.
     choice : Choice or None
+    model : Model or None
         Of the optimal method.
     """
 
@@ -70,6 +73,7 @@ class Plan:
     notes: tuple[str, ...] = ()
     sectors: tuple[Sector, ...] = ()
     choice: Choice | None = None
+    model: Model | None = None
 
     @property
     def trade_off(self) -> TradeOff | None:
@@ -105,10 +109,6 @@ def paper_plan(
         raise Infeasible(f"no pressure serves all joints: {error}") from error
     say(f"joints: {len(sectors)} at {layout.pressure_bar:.2f} bar")
 
-    def place(s: float) -> str:
-        share = request.start_pct + s / profile.length_mm * (request.end_pct - request.start_pct)
-        return f"{s:.0f} mm down the profile ({share:.0f} % of the side)"
-
     return Plan(
         layout=layout,
         by="formula",
@@ -116,9 +116,21 @@ def paper_plan(
             layout.bends(), layout.length_mm, material.radius_mm, layout.pose, profile.sign
         ),
         places=np.array([sector.centre for sector in sectors]),
-        reasons=shortfalls(sectors, layout, rules, material, formula, request.joints, place),
+        reasons=shortfalls(
+            sectors, layout, rules, material, formula, request.joints, _placer(request, profile)
+        ),
         sectors=sectors,
     )
+
+
+def _placer(request: Request, profile: Profile) -> Callable[[float], str]:
+    """Say in words where an arc length on the profile is."""
+
+    def place(s: float) -> str:
+        share = request.start_pct + s / profile.length_mm * (request.end_pct - request.start_pct)
+        return f"{s:.0f} mm down the profile ({share:.0f} % of the side)"
+
+    return place
 
 
 def optimal_plan(
@@ -162,6 +174,7 @@ def optimal_plan(
         places=_places(bent, actuator.chain, profile),
         notes=tuple(notes),
         choice=choice,
+        model=model,
     )
 
 
@@ -273,7 +286,18 @@ def _places(shape: Shape, chain: Chain, profile: Profile) -> FloatArray:
     return np.asarray(profile.s[np.argmin(away, axis=0)], dtype=float)
 
 
-def not_good(plan: Plan, design: Design, profile: Profile, request: Request) -> tuple[str, ...]:
+def misses(plan: Plan, shape: Shape, profile: Profile, request: Request) -> tuple[Missed, ...]:
+    """Find the stretches of the profile that an optimal plan's bent shape is far off, with why."""
+    if plan.choice is None or plan.model is None:
+        return ()
+    bent = replace(plan.choice, shape=shape)
+    place = _placer(request, profile)
+    return missed(profile, bent, plan.model, request.material, TOLERANCE_MM, place)
+
+
+def not_good(
+    design: Design, profile: Profile, request: Request, places: Sequence[Missed]
+) -> tuple[str, ...]:
     """Give reasons why an optimal plan is no design; none where it is good enough."""
     fit = design.fit.fe or design.fit.response or design.fit.formula
     limit = request.tolerance_mm or GOOD_SHARE * profile.length_mm
@@ -283,9 +307,11 @@ def not_good(plan: Plan, design: Design, profile: Profile, request: Request) -> 
             f"the best shape found lies {fit.rms_mm:.2f} mm RMS and up to {fit.max_mm:.2f} mm off "
             f"the profile, more than {limit:.2f} mm RMS"
         )
-    if design.tube.length_mm > request.material.max_length_mm + 0.05:
+        reasons += [place.reason for place in places]
+    longest = request.material.max_length_mm
+    if design.tube.length_mm > longest + _SLACK_MM:
         reasons.append(
-            f"the tube would be {design.tube.length_mm:.1f} mm long, more than "
-            f"{request.material.max_length_mm:g} mm"
+            f"the tube would be {design.tube.length_mm:.1f} mm long, more than {longest:g} mm; "
+            "shorten the stretch (--from, --to), or raise --max-length"
         )
     return tuple(reasons)

@@ -154,7 +154,7 @@ class Joint:
     away from it). It is given as wanted, and as the formula, the joint response (where the joints
     were chosen by it) and FE predict it. ``F_mm`` runs from this joint's centre to the next
     one's, the last one's to the tube's end. ``centre_mm`` is the joint's place along the tube,
-    from the clamped end.
+    from the clamped end. ``stretch_fe`` is the largest principal stretch of the rubber there.
     """
 
     number: int
@@ -167,6 +167,7 @@ class Joint:
     theta_fe_deg: float | None
     centre_mm: float
     theta_response_deg: float | None = None
+    stretch_fe: float | None = None
 
     @property
     def sense(self) -> float:
@@ -295,8 +296,12 @@ class FeState:
         Midpoints of the wrapped sectors, the clamped one first.
     air_ml : float
         Volume gained since rest, at the tube's own pressure.
+    joint_stretch : tuple of float
+        Largest principal stretch of the rubber at every joint.
     largest_stretch, least_J : float
         Of the rubber: largest principal stretch, smallest change of volume.
+    slack_share : float
+        Of the wrapped surface: where axial threads are slack.
     thread_N : float
         Largest force in a single thread.
     residual, energy_error : float
@@ -310,8 +315,10 @@ class FeState:
     shape: Shape
     phalanges: FloatArray
     air_ml: float
+    joint_stretch: tuple[float, ...]
     largest_stretch: float
     least_J: float
+    slack_share: float
     thread_N: float
     residual: float
     energy_error: float

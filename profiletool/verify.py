@@ -241,10 +241,14 @@ def check(design: Design, profile: Profile, progress: Progress | None = None) ->
     found = run.verification
     if found.critical is not None:
         return Check(design, run, said(found.critical))
-    angles = zip(design.joints, found.last.theta_deg, strict=True)
+    by_joint = zip(design.joints, found.last.theta_deg, found.last.joint_stretch, strict=True)
     joints = tuple(
-        replace(joint, theta_fe_deg=round(magnitude(theta, joint.alpha_center_deg), DECIMALS))
-        for joint, theta in angles
+        replace(
+            joint,
+            theta_fe_deg=round(magnitude(theta, joint.alpha_center_deg), DECIMALS),
+            stretch_fe=round(stretch, DECIMALS - 1),
+        )
+        for joint, theta, stretch in by_joint
     )
     off = misfit(found.last.shape, profile)
     off = replace(off, rms_mm=round(off.rms_mm, DECIMALS), max_mm=round(off.max_mm, DECIMALS))
@@ -291,7 +295,12 @@ def _state(
         shape=_shape(found.mesh, state, place),
         phalanges=place(np.array([sector.centre for sector in state.sectors])),
         air_ml=1e-3 * (state.volume - found.states[0].volume),
+        joint_stretch=tuple(
+            float(state.stretches[found.mesh.segment == 2 * k + 1].max(initial=1.0))
+            for k in range(len(theta_deg))
+        ),
         largest_stretch=state.largest_stretch,
+        slack_share=state.threads.slack_share,
         least_J=state.least_J,
         thread_N=pitch * max(state.threads.axial_force, state.threads.hoop_force),
         residual=state.residual,

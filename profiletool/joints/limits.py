@@ -11,9 +11,12 @@ from profiletool.joints.assign import NEAR_DEG, Layout
 from profiletool.joints.kinematics import depth_inside, meets_itself
 from profiletool.joints.pieces import Rules
 from profiletool.joints.sectors import Sector
-from profiletool.records import Joint, Material, Misfit, Profile, Shape
+from profiletool.records import Design, FeState, Joint, Material, Misfit, Profile, Shape
 
 _FORMULA_LOW_ABOVE_BAR = 1.2
+_BREAKS = 9.5  # stretch of silicone at break: 850 % of strain
+_SLACK_SHARE = 0.1
+_BULGES_ABOVE_BAR = 2.0
 _SLACK = 0.05  # mm or deg that nobody can see
 
 
@@ -172,6 +175,24 @@ def shape_warnings(shape: Shape, profile: Profile, depth_mm: float) -> Iterator[
         yield f"the tube would press up to {depth:.1f} mm into the object"
     if meets_itself(shape):
         yield "the bent tube runs into itself"
+
+
+def wear(state: FeState, design: Design) -> Iterator[str]:
+    """Say what strains the tube at its operating pressure, by FE."""
+    worst = max(design.joints, key=lambda joint: joint.stretch_fe or 0.0)
+    yield (
+        f"the rubber is stretched most at joint {worst.number}: {worst.stretch_fe:.1f} times "
+        f"(silicone breaks at {_BREAKS:g} times)"
+    )
+    if state.slack_share > _SLACK_SHARE:
+        yield (
+            f"axial threads are slack on {100.0 * state.slack_share:.0f} % of the wrapped surface: "
+            "the gauze may wrinkle there"
+        )
+    if design.pressure_bar > _BULGES_ABOVE_BAR:
+        yield f"bulges were seen above {_BULGES_ABOVE_BAR:.1f} bar on the paper's actuators"
+    if state.touches:
+        yield "by FE the bent tube touches itself; the model lets it pass through"
 
 
 def named(numbers: Iterable[int]) -> str:

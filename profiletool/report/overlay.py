@@ -44,7 +44,7 @@ class Scene:
 
     ``backdrop`` is None for a drawn profile, ``fe`` (the tube by finite elements) where it was
     not verified; ``bent`` is the tube as what the joints were chosen ``by`` bends it. ``places``
-    are the joints' on the profile, mm.
+    are the joints' on the profile, ``missed`` the stretches that the tube is far off, mm.
     """
 
     backdrop: Backdrop | None
@@ -56,6 +56,7 @@ class Scene:
     bent: Shape
     straight: Shape
     fe: Shape | None = None
+    missed: Sequence[tuple[float, float]] = ()
 
 
 def backdrop_of(picture: Picture, mm_per_px: float, origin_px: tuple[float, float]) -> Backdrop:
@@ -203,6 +204,12 @@ def _draw_profile(axes: Any, scene: Scene) -> None:
         *profile.points.T, color=INK, lw=2.2, zorder=6, path_effects=_halo(4.2),
         label="profile to follow",
     )  # fmt: skip
+    for k, (start, end) in enumerate(scene.missed):
+        within = (profile.s >= start) & (profile.s <= end)
+        axes.plot(
+            *profile.points[within].T, color="#d00000", lw=3.4, zorder=8, solid_capstyle="butt",
+            label="missed by more than 1 mm" if k == 0 else None,
+        )  # fmt: skip
     bridged = np.where(profile.bridged[:, None], profile.points, np.nan)
     if profile.bridged.any():
         axes.plot(*bridged.T, color=SKY, lw=2.2, zorder=7, label="grooves bridged")
