@@ -143,6 +143,12 @@ def optimal_plan(
     UsageError, NoObject
     """
     model = _model(request, formula)
+    if request.material.max_pressure_bar < _BAR * model.pressure[0]:
+        raise UsageError(
+            f"--max-pressure {request.material.max_pressure_bar:g} bar is less than the "
+            f"{_BAR * model.pressure[0]:g} bar from which on the joints are known by the "
+            f"{_by(model)}"
+        )
     wish = Wish(
         tolerance_mm=request.tolerance_mm or TOLERANCE_MM,
         interference_mm=request.interference_mm,
@@ -212,7 +218,7 @@ def _built(request: Request, profile: Profile, model: Model, choice: Choice) -> 
     parameters = parameters_of(choice.chain, profile, choice.limits)
     vector = parameters.pack(Actuator(choice.chain, choice.pressure, choice.pose))
     found = correct(
-        ModelBench(model), parameters, vector, profile, _steps(request),
+        ModelBench(model), model, parameters, vector, profile, _steps(request),
         request.interference_mm, lambda line: None,
     )  # fmt: skip
     return found.best.actuator
@@ -231,7 +237,7 @@ def _corrected(
     parameters = parameters_of(choice.chain, profile, choice.limits)
     vector = parameters.pack(Actuator(choice.chain, choice.pressure, choice.pose))
     found = correct(
-        FeBench(material), parameters, vector, profile, _steps(request), request.interference_mm,
+        FeBench(material), model, parameters, vector, profile, _steps(request), request.interference_mm,
         lambda line: say(f"finite elements, {line}"),
     )  # fmt: skip
     return found.best.actuator
@@ -308,6 +314,11 @@ def not_good(
             f"the profile, more than {limit:.2f} mm RMS"
         )
         reasons += [place.reason for place in places]
+    if request.joints is not None and len(design.joints) < request.joints:
+        reasons.append(
+            f"there is no room for {request.joints} joints on this profile, only "
+            f"{len(design.joints)}"
+        )
     longest = request.material.max_length_mm
     if design.tube.length_mm > longest + _SLACK_MM:
         reasons.append(

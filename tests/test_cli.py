@@ -126,6 +126,13 @@ def test_left_and_right_of_a_symmetric_object_agree(tmp_path: Path) -> None:
         ("--method", "magic"),
         ("--pitch", "50"),
         ("--max-pressure", "0.05"),
+        ("--max-pressure", "0.05", "--method", "paper"),
+        ("--interference", "-0.1"),
+        ("--interference", "nan"),
+        ("--alpha-step", "-5"),
+        ("--alpha-step", "inf"),
+        ("--place-step", "-1"),
+        ("--place-step", "wide"),
         ("--no-such-option",),
         ("--config", "absent.toml", "--config", "absent.toml", "--bad"),
     ],
@@ -207,7 +214,7 @@ def test_exit_5_for_a_straight_profile(tmp_path: Path) -> None:
 
 def test_exit_6_writes_the_best_attempt(tmp_path: Path) -> None:
     (tmp_path / "corner.csv").write_text("0,80\n0,0\n80,0\n")
-    result = unverified("corner.csv")
+    result = unverified("corner.csv", "--method", "paper")
     assert result.exit_code == 6
     assert "marked infeasible" in error_of(result)
     written = json.loads((tmp_path / "corner_design" / "design.json").read_text())
@@ -222,9 +229,21 @@ def test_exit_6_writes_the_best_attempt(tmp_path: Path) -> None:
 def test_exit_6_for_other_limits(
     options: tuple[str, ...], says: str, samples: Path, tmp_path: Path
 ) -> None:
-    result = unverified(samples / "egg.png", *options)
+    result = unverified(samples / "egg.png", "--method", "paper", *options)
     assert result.exit_code == 6
     assert says in error_of(result)
+
+
+def test_exit_6_for_a_shape_that_is_not_good_enough(tmp_path: Path) -> None:
+    (tmp_path / "corner.csv").write_text("0,80\n0,0\n80,0\n")
+    result = unverified("corner.csv", "--tolerance", "0.1", "--joints", "1")
+    assert result.exit_code == 6
+    assert "more than 0.10 mm RMS" in error_of(result)
+    written = json.loads((tmp_path / "corner_design" / "design.json").read_text())
+    assert written["method"] == "optimal"
+    assert written["feasible"] is False
+    assert written["fit"]["response"]["rms_mm"] > 0.1
+    assert "INFEASIBLE" in (tmp_path / "corner_design" / "template.svg").read_text()
 
 
 def test_config_gives_defaults_and_the_command_line_wins(samples: Path, tmp_path: Path) -> None:
@@ -339,7 +358,8 @@ def test_shape_csv_holds_target_and_predicted_line(samples: Path, tmp_path: Path
     [
         ("500,100\n500,50\n500,0\n", ("--joints", "2"), 5),
         ("0,80\n0,0\n80,0\n", ("--from", "50", "--to", "50.01"), 5),
-        ("0,80\n-20,0\n0,-80\n", ("--joints", "300"), 6),
+        ("0,80\n-20,0\n0,-80\n", ("--joints", "300", "--method", "paper"), 6),
+        ("0,20\n-5,0\n0,-20\n", ("--joints", "40"), 6),
         ("0,80\n-20,0\n0,-80\n", ("--out", "x" * 300), 1),
     ],
 )
@@ -370,7 +390,14 @@ def test_scale_options_on_a_drawing_are_not_silent(samples: Path) -> None:
 
 
 def test_the_fit_is_on_the_screen(samples: Path) -> None:
-    assert "predicted off the profile:" in unverified(samples / REST).stdout
+    for method, by in (("paper", ["formula"]), ("optimal", ["formula", "joint response"])):
+        shown = unverified(samples / REST, "--method", method, "--force").stdout
+        told = [line for line in shown.splitlines() if " off the profile: " in line]
+        assert [line.partition(" off the profile: ")[0] for line in told] == [
+            f"by the {name}" for name in by
+        ]
+        assert all(line.endswith(" mm at most") for line in told)
+        assert ("response deg" in shown) == (method == "optimal")
 
 
 def test_a_fault_of_ours_is_one_line_too(monkeypatch: pytest.MonkeyPatch, samples: Path) -> None:
@@ -442,12 +469,13 @@ def ending_early(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def never_converging(monkeypatch: pytest.MonkeyPatch) -> None:
     from fem.errors import NotConverged
-    from profiletool import verify
+    from profiletool import refine, verify
 
     def fails(*_: object, **__: object) -> None:
         raise NotConverged("inverted at 0.010 bar", (), 0.001)
 
-    monkeypatch.setattr(verify, "solve", fails)
+    for module in (verify, refine):
+        monkeypatch.setattr(module, "solve", fails)
 
 
 def test_joint_as_json_and_as_text() -> None:
@@ -604,8 +632,9 @@ def test_verify_refuses(samples: Path, tmp_path: Path) -> None:
 
 
 def test_verify_agrees_with_design(samples: Path, tmp_path: Path) -> None:
-    made = json.loads(call("design", samples / REST, "--json", "--quiet").stdout)
+    made = json.loads(call("design", samples / REST, "--no-refine", "--json", "--quiet").stdout)
     assert made["verified"] is True
+    assert {entry["what"].split()[0] for entry in made["sensitivity"]} >= {"pressure", "joint"}
     again = call("verify", "finger_rest_design/design.json", "--out", "again", "--json", "--quiet")
     found = json.loads(again.stdout)
     assert found["fit"]["target"] == "shape.csv"
@@ -621,15 +650,17 @@ def test_verify_agrees_with_design(samples: Path, tmp_path: Path) -> None:
     ("failing", "says"),
     [(ending_early, "limit point"), (never_converging, "no equilibrium found")],
 )
+@pytest.mark.parametrize("method", ["paper", "optimal"])
 def test_exit_7_writes_the_design_marked_not_verified(
     failing: Callable[[pytest.MonkeyPatch], None],
     says: str,
+    method: str,
     samples: Path,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     failing(monkeypatch)
-    result = call("design", samples / REST)
+    result = call("design", samples / REST, "--method", method, "--no-refine")
     assert result.exit_code == 7
     assert says in error_of(result)
     folder = tmp_path / "finger_rest_design"
@@ -645,10 +676,48 @@ def test_exit_7_writes_the_design_marked_not_verified(
     assert "FE deg" not in result.stdout
 
 
-def test_exit_6_wins_over_exit_7(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_exit_7_where_no_choice_of_joints_stands(
+    samples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    never_converging(monkeypatch)
+    result = call("design", samples / REST)  # with refinement, which cannot even begin
+    assert result.exit_code == 7
+    assert "no equilibrium found beyond 0.01 bar" in error_of(result)
+    design = json.loads((tmp_path / "finger_rest_design" / "design.json").read_text())
+    (note,) = (w for w in design["warnings"] if "did not stand by FE" in w)
+    assert note == (
+        "the first choice of joints did not stand by FE: no equilibrium found beyond 0.01 bar"
+    )
+    assert design["method"] == "optimal"
+    assert design["verified"] is False
+    assert design["feasible"] is True
+    assert design["sensitivity"] == []
+
+
+@pytest.mark.slow
+def test_finite_elements_correct_the_choice(samples: Path, tmp_path: Path) -> None:
+    options = ("--json", "--quiet")
+    first = json.loads(call("design", samples / REST, "--no-refine", *options).stdout)
+    result = call("design", samples / REST, *options, "--force")
+    assert result.exit_code == 0, result.stderr
+    refined = json.loads(result.stdout)
+    rms = refined["fit"]["fe"]["rms_mm"]
+    assert rms < 0.8 * first["fit"]["fe"]["rms_mm"]
+    assert rms < 0.5
+    thread = np.degrees(0.2)  # of 2 mm, at a radius of 10 mm
+    for joint in refined["joints"]:
+        assert joint["alpha_closed_deg"] / thread == pytest.approx(
+            round(joint["alpha_closed_deg"] / thread), abs=1e-6
+        )
+
+
+@pytest.mark.parametrize("method", ["paper", "optimal"])
+def test_exit_6_wins_over_exit_7(
+    method: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     never_converging(monkeypatch)
     (tmp_path / "corner.csv").write_text("0,80\n0,0\n80,0\n")
-    result = call("design", "corner.csv")
+    result = call("design", "corner.csv", "--method", method, "--tolerance", "0.1")
     assert result.exit_code == 6
     design = json.loads((tmp_path / "corner_design" / "design.json").read_text())
     assert design["verified"] is False

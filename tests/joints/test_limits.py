@@ -7,11 +7,18 @@ import pytest
 
 from formula.theta import load_formula
 from profiletool.joints.assign import Layout, joint_rules, theta_table
-from profiletool.joints.kinematics import deform
-from profiletool.joints.limits import disagreement, named, shape_warnings, shortfalls, warnings
+from profiletool.joints.kinematics import Bend, deform
+from profiletool.joints.limits import (
+    disagreement,
+    named,
+    polygon_warnings,
+    shape_warnings,
+    shortfalls,
+    warnings,
+)
 from profiletool.joints.sectors import Sector
 from profiletool.profile.target import Reach, profile_of_object
-from profiletool.records import Joint, Material, Misfit, Pose
+from profiletool.records import Joint, Material, Misfit, Pose, Shape
 
 PAPER = load_formula()
 MATERIAL = Material()
@@ -88,15 +95,26 @@ def test_warnings_come_with_their_cause_only() -> None:
     assert "ends at 2 bar" in noted(quiet, material=replace(MATERIAL, max_pressure_bar=3.0))
 
 
-def test_what_is_wrong_with_the_shape() -> None:
+def tube_at(dy: float, *bends: Bend) -> Shape:
     x, y = ROUND.points[0]
-    outside = deform([], 60.0, 10.0, Pose(float(x), float(y), 180.0), ROUND.sign)
-    assert list(shape_warnings([GOOD], outside, ROUND, 1.0, None)) == []
-    lower = deform([], 60.0, 10.0, Pose(float(x), float(y) - 4.0, 180.0), ROUND.sign)
-    (pressed,) = shape_warnings([GOOD], lower, ROUND, 1.0, None)
+    return deform(bends, 60.0, 10.0, Pose(float(x), float(y) + dy, 180.0), ROUND.sign)
+
+
+def test_what_is_wrong_with_the_shape() -> None:
+    assert list(shape_warnings(tube_at(0.0), ROUND, 1.0)) == []
+    (pressed,) = shape_warnings(tube_at(-4.0), ROUND, 1.0)
     assert "press up to 4.0 mm into the object" in pressed
-    (asked,) = shape_warnings([replace(GOOD, deviation_mm=2.5)], outside, ROUND, 1.0, 1)
-    assert "with --joints 1 the polygon is 2.5 mm off" in asked
+    assert list(shape_warnings(tube_at(-4.0), ROUND, 4.1)) == []
+    curled = tube_at(0.0, *(Bend(at, 8.0, -2.6) for at in (15.0, 30.0, 45.0)))
+    assert list(shape_warnings(curled, ROUND, 100.0)) == ["the bent tube runs into itself"]
+
+
+def test_what_is_wrong_with_the_polygon() -> None:
+    off = replace(GOOD, deviation_mm=2.5)
+    (asked,) = polygon_warnings([GOOD, off], 1.0, 2)
+    assert asked == "with --joints 2 the polygon is 2.5 mm off the profile, beyond --tolerance 1"
+    assert list(polygon_warnings([GOOD, off], 1.0, None)) == []  # a shortfall there
+    assert list(polygon_warnings([GOOD], 1.0, 1)) == []
 
 
 def test_joints_by_name() -> None:

@@ -78,6 +78,46 @@ def test_bulb_with_finite_elements(bulb: Scene) -> None:
     check("overlay_bulb_fe.webp", draw_overlay(by_fe(bulb)))
 
 
+def by_response(scene: Scene) -> Scene:
+    """As if the joint response had bent every joint by a tenth less, and steps were one thread."""
+    design = scene.design
+    less = [replace(bend, turn_rad=0.9 * bend.turn_rad) for bend in scene.bends]
+    bent = deform(less, design.tube.length_mm, 10.0, design.base_pose, scene.profile.sign)
+    joints = tuple(
+        replace(
+            j,
+            theta_response_deg=0.9 * j.theta_formula_deg,
+            alpha_closed_deg=round(j.alpha_closed_deg * np.pi / 36.0) * 36.0 / np.pi,
+        )
+        for j in design.joints
+    )
+    fit = replace(design.fit, response=misfit(bent, scene.profile))
+    design = replace(design, joints=joints, fit=fit, method="optimal", warnings=())
+    return replace(scene, design=design, bent=bent, by="joint response")
+
+
+def test_bulb_by_the_joint_response(bulb: Scene) -> None:
+    # A design that no better choice of joints can change; what is chosen is tested elsewhere.
+    check("overlay_bulb_response.webp", draw_overlay(by_response(bulb)))
+
+
+def test_an_optimal_design_is_drawn_as_the_response_bends_it(samples: Path) -> None:
+    result = run(Request(samples / "finger_rest.csv", method="optimal"), lambda line: None)
+    scene = scene_of(result)
+    assert scene.by == "joint response"
+    assert scene.fe is None
+    assert scene.bent is result.plan.bent
+    off = misfit(scene.bent, scene.profile).rms_mm
+    assert off == pytest.approx(result.design.fit.response.rms_mm)
+    assert off < result.design.fit.formula.rms_mm
+    assert (
+        worst_block(
+            reduced(draw_overlay(scene)), reduced(draw_overlay(replace(scene, bent=result.shape)))
+        )
+        > 16.0
+    )
+
+
 def test_finite_elements_a_millimetre_off_are_seen(bulb: Scene) -> None:
     scene = by_fe(bulb)
     assert scene.fe is not None
