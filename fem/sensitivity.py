@@ -19,6 +19,7 @@ from fem.actuator import Actuator, Window
 from fem.assembly import Forces, System
 from fem.errors import FemError
 from fem.mesh import Mesh, make_mesh, remesh
+from fem.transfer import settle
 
 FloatArray = NDArray[np.float64]
 
@@ -37,12 +38,15 @@ class Rate:
     z : (layers + 1,) mm per unit
         Of the rings' places along the tube.
     volume : float, mm^3 per unit
+    moved : (layers + 1, ring + mid, 3) mm per unit
+        Of all nodes, which move along the tube with the parameter.
     """
 
     theta: FloatArray
     facing: FloatArray
     z: FloatArray
     volume: float
+    moved: FloatArray
 
 
 @dataclass(frozen=True)
@@ -67,6 +71,32 @@ class Sensitivities:
     openF: tuple[Rate, ...]
     wrapped: tuple[Rate, ...]
     wall: Rate
+
+
+def flow_to(rates: Sensitivities, known: Actuator, new: Actuator, rise: float) -> FloatArray:
+    """Motion of the nodes from a known actuator to a similar one, to first order, mm.
+
+    Parameters
+    ----------
+    rates : Sensitivities
+        Of the known actuator's state.
+    known, new : Actuator
+        With as many windows, and the same but for lengths and angles.
+    rise : float
+        Of the pressure, MPa.
+
+    Returns
+    -------
+    (layers + 1, ring + mid, 3)
+    """
+    flow = rise * rates.pressure.moved
+    for rate, v, w in zip(rates.alpha, known.windows, new.windows, strict=True):
+        flow = flow + (w.alpha - v.alpha) * rate.moved
+    for rate, v, w in zip(rates.openF, known.windows, new.windows, strict=True):
+        flow = flow + (w.openF - v.openF) * rate.moved
+    for rate, (a, b), (c, d) in zip(rates.wrapped, known.wrapped, new.wrapped, strict=True):
+        flow = flow + ((d - c) - (b - a)) * rate.moved
+    return flow
 
 
 def sensitivities(mesh: Mesh, x: FloatArray, pressure: float, threads: int = 2) -> Sensitivities:
@@ -99,7 +129,7 @@ def sensitivities(mesh: Mesh, x: FloatArray, pressure: float, threads: int = 2) 
             changes = _changes(count)
             rhs = [forces.volume_gradient]
             for family in changes:
-                rhs += _pulls(system, x, family)
+                rhs += _pulls(system, x, pressure, family)
             flows = inverse.solve(np.array(rhs))
             rates = [_rate(system, x, forces, flows[0], None)]
             every = [change for family in changes for change in family]
@@ -141,6 +171,11 @@ def _changes(count: int) -> tuple[tuple[_Change, ...], ...]:
     )
 
 
+def _enclosed(mesh: Mesh, x: FloatArray) -> float:
+    """Volume enclosed at nodal positions x, mm^3 (half of it in a half model)."""
+    return System(mesh, threads=1).forces(x).volume
+
+
 def _thicken(actuator: Actuator, amount: float) -> Actuator:
     return replace(actuator, wall=actuator.wall + amount)
 
@@ -152,7 +187,9 @@ def _changed(mesh: Mesh, actuator: Actuator) -> Mesh:
     return remesh(mesh, actuator)
 
 
-def _pulls(system: System, x: FloatArray, family: Sequence[_Change]) -> list[FloatArray]:
+def _pulls(
+    system: System, x: FloatArray, pressure: float, family: Sequence[_Change]
+) -> list[FloatArray]:
     """-dR/dp of a family's parameters, each (count,).
 
     All are changed at once: a segment's layers alone feel its own parameter, all others move
@@ -166,8 +203,12 @@ def _pulls(system: System, x: FloatArray, family: Sequence[_Change]) -> list[Flo
         actuator = mesh.actuator
         for parameter in family:
             actuator = parameter.change(actuator, sign * step)
-        ends.append(System(_changed(mesh, actuator), threads=1).forces(x).internal)
-    pull = -(ends[0] - ends[1]) / (2.0 * step)
+        near = _changed(mesh, actuator)
+        # With the wall the clamped ring and the plug's change as well.
+        at = settle(x, near)
+        ends.append(System(near, threads=1).forces(at))
+    residuals = [forces.residual(pressure) for forces in ends]
+    pull = -(residuals[0] - residuals[1]) / (2.0 * step)
     return [np.where(_felt(system, parameter.segment), pull, 0.0) for parameter in family]
 
 
@@ -192,18 +233,22 @@ def _rate(
     moved = system.expand(x, du)
     # The angles by differences along the known motion.
     size = min(1e-4 / max(float(np.abs(moved).max()), 1e-12), _LENGTH if parameter else 1.0)
-    ends, theta = [], []
+    ends, theta, grown = [], [], 0.0
     for sign in (1.0, -1.0):
         near = mesh
         if parameter is not None:
             near = remesh(mesh, parameter.change(mesh.actuator, sign * size), gauze=False)
+            if parameter.segment is None:
+                near = _changed(mesh, near.actuator)
+                grown += sign * _enclosed(near, settle(x, near)) / (2.0 * size)
         ends.append(near)
         theta.append(_angles(near, x + sign * size * moved))
     return Rate(
         theta=(theta[0] - theta[1]) / (2.0 * size),
         facing=measure.surface_line(mesh, moved, np.radians(270.0)),
         z=(ends[0].z - ends[1].z) / (2.0 * size),
-        volume=(2.0 if mesh.half else 1.0) * float(forces.volume_gradient @ du),
+        volume=(2.0 if mesh.half else 1.0) * (float(forces.volume_gradient @ du) + grown),
+        moved=moved,
     )
 
 

@@ -18,7 +18,7 @@ from fem.mesh import Mesh, make_mesh
 from fem.meshsize import DEFAULT_MESH, MeshSize
 from fem.newton import correct
 from fem.sections import Chart
-from fem.transfer import transfer
+from fem.transfer import carry, settle, transfer
 
 FloatArray = NDArray[np.float64]
 DEFAULT_OPTIONS = Options()
@@ -185,6 +185,7 @@ def solve_near(
     pressure: float,
     options: Options = DEFAULT_OPTIONS,
     *,
+    flow: FloatArray | None = None,
     threads: int = 2,
 ) -> Solution:
     """Find an actuator's state at one pressure from a similar actuator's last state.
@@ -201,6 +202,8 @@ def solve_near(
     known : Solution
     pressure : float, MPa
     options : Options
+    flow : (layers + 1, ring + mid, 3), optional
+        Motion of the known state's nodes to be expected, mm; see `fem.sensitivity.flow_to`.
     threads : {1, 2}
 
     Returns
@@ -223,14 +226,18 @@ def solve_near(
             chart = Chart(mesh)
             system = System(mesh, threads)
             try:
-                start = chart.of(transfer(last, x, mesh))
-                done = correct(system, chart, start, pressure, options.tolerance)
+                if flow is None:
+                    start = transfer(last, x, mesh)
+                else:
+                    start = settle(carry(last, _moved(last, x, step * flow), mesh), mesh)
+                done = correct(system, chart, chart.of(start), pressure, options.tolerance)
             finally:
                 system.close()
             history.append(
                 Attempt(pressure, done.iterations, done.factored, done.residual, done.outcome)
             )
             if done.outcome == "converged" and not (done.negative and options.stable):
+                flow = None if flow is None else carry(last, flow, mesh)
                 share, last, x = min(share + step, 1.0), mesh, done.pose.x
             elif step > _LEAST_WAY:
                 step *= 0.5
@@ -250,6 +257,13 @@ def solve_near(
         factorisations=sum(a.factorisations for a in history),
         seconds=time.perf_counter() - begun,
     )
+
+
+def _moved(mesh: Mesh, x: FloatArray, flow: FloatArray) -> FloatArray:
+    """Move nodes by a motion that may hold large rotations of the sections."""
+    chart = Chart(mesh)
+    pose = chart.of(x)
+    return chart.move(pose, chart.increment(pose, flow)).x
 
 
 def between(first: Actuator, last: Actuator, share: float) -> Actuator:

@@ -30,17 +30,29 @@ def transfer(old: Mesh, x: FloatArray, new: Mesh) -> FloatArray:
     -------
     (layers + 1, ring + mid, 3) mm
     """
-    mid = slice(new.ring, None)
-    found = new.X.copy()
-    found[:, : new.ring] = _around(old, x, new.X[0, : new.ring], -1.0)
-    found[:-1, mid] = _around(old, x, new.X[0, mid], 0.0)[:-1]
+    found = carry(old, x, new)
     _lengthen(old, new, found)
-    found[0, : new.ring] = new.X[0, : new.ring]
-    # The plug stays rigid to the last bit.
-    rest, now = new.X[-1, : new.ring], found[-1, : new.ring]
-    middle = rest.mean(axis=0)
-    R = best_rotation(rest - middle, now - now.mean(axis=0))
-    found[-1, : new.ring] = now.mean(axis=0) + (rest - middle) @ R.T
+    return settle(found, new)
+
+
+def carry(old: Mesh, values: FloatArray, new: Mesh) -> FloatArray:
+    """Interpolate nodal values (layers + 1, ring + mid, 3) within the tube's section alone."""
+    found = np.zeros_like(new.X)
+    mid = slice(new.ring, None)
+    found[:, : new.ring] = _around(old, values, new.X[0, : new.ring], -1.0)
+    found[:-1, mid] = _around(old, values, new.X[0, mid], 0.0)[:-1]
+    return found
+
+
+def settle(x: FloatArray, new: Mesh) -> FloatArray:
+    """Bring nodal positions onto the clamp and the rigid plug."""
+    X, found = new.X, x.copy()
+    found[-1, new.ring :] = X[-1, new.ring :]
+    found[0, : new.ring] = X[0, : new.ring]
+    # The plug stays rigid to the last bit; its outer nodes say where it is, whatever the wall.
+    rest, now = X[-1, new.outer_ring], found[-1, new.outer_ring]
+    R = best_rotation(rest - rest.mean(axis=0), now - now.mean(axis=0))
+    found[-1, : new.ring] = now.mean(axis=0) + (X[-1, : new.ring] - rest.mean(axis=0)) @ R.T
     return found
 
 

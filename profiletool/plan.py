@@ -237,8 +237,8 @@ def _corrected(
     parameters = parameters_of(choice.chain, profile, choice.limits)
     vector = parameters.pack(Actuator(choice.chain, choice.pressure, choice.pose))
     found = correct(
-        FeBench(material), model, parameters, vector, profile, _steps(request), request.interference_mm,
-        lambda line: say(f"finite elements, {line}"),
+        FeBench(material), model, parameters, vector, profile, _steps(request),
+        request.interference_mm, lambda line: say(f"finite elements, {line}"),
     )  # fmt: skip
     return found.best.actuator
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from fem.actuator import Actuator as Tube
 from fem.errors import BadGeometry, NotConverged
-from fem.sensitivity import Rate, Sensitivities, sensitivities
+from fem.sensitivity import Rate, Sensitivities, flow_to, sensitivities
 from fem.solve import Solution, solve, solve_near
 from profiletool.joints.correct import CannotBend, Trial
 from profiletool.joints.parameters import Actuator, base_axes
@@ -25,6 +25,7 @@ class FeBench:
 
     def __init__(self, material: Material) -> None:
         self._material = material
+        self._rates: tuple[Solution, Sensitivities] | None = None  # the last ones found
 
     def bend(
         self, actuator: Actuator, sign: float, near: Trial[Solution] | None
@@ -32,8 +33,7 @@ class FeBench:
         """Bend an actuator, from a similar one's state where that leads there."""
         try:
             tube = tube_of(actuator.chain, self._material)
-            known = None if near is None else near.state
-            solution = _solved(tube, known, actuator.pressure)
+            solution = self._solved(tube, near, actuator.pressure)
         except NotConverged as error:
             raise CannotBend(shortly(error), error.reached) from error
         except BadGeometry as error:
@@ -44,23 +44,33 @@ class FeBench:
 
     def motion(self, trial: Trial[Solution]) -> FloatArray:
         """Motion of the object-facing line's points by each number: (size, N, 2)."""
-        return motion_of(trial)
+        rates = rates_of(trial)
+        self._rates = (trial.state, rates)
+        return motion_of(trial, rates)
+
+    def _solved(self, tube: Tube, near: Trial[Solution] | None, pressure: float) -> Solution:
+        if near is not None:
+            known, flow = near.state, None
+            if self._rates is not None and self._rates[0] is known:
+                rise = pressure - known.states[-1].pressure
+                flow = flow_to(self._rates[1], known.mesh.actuator, tube, rise)
+            try:
+                return solve_near(tube, known, pressure, flow=flow)
+            except NotConverged:
+                pass  # too far off: all the way from rest, then
+        return solve(tube, [pressure])
 
 
-def _solved(tube: Tube, known: Solution | None, pressure: float) -> Solution:
-    if known is not None:
-        try:
-            return solve_near(tube, known, pressure)
-        except NotConverged:
-            pass  # too far off: all the way from rest, then
-    return solve(tube, [pressure])
+def rates_of(trial: Trial[Solution]) -> Sensitivities:
+    """Differentiate a trial's state."""
+    solution = trial.state
+    return sensitivities(solution.mesh, solution.states[-1].x, trial.actuator.pressure)
 
 
-def motion_of(trial: Trial[Solution]) -> FloatArray:
+def motion_of(trial: Trial[Solution], rates: Sensitivities) -> FloatArray:
     """Differentiate the object-facing line's points by each number of the vector: (size, N, 2)."""
     parameters, shape = trial.parameters, trial.shape
     solution, at = trial.state, trial.actuator
-    rates = sensitivities(solution.mesh, solution.states[-1].x, at.pressure)
     heading = np.radians(at.pose.heading_deg)
     along, outward = base_axes(float(heading), parameters.sign)
 

@@ -8,7 +8,7 @@ built, and what stays free follows.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
@@ -23,14 +23,15 @@ from profiletool.joints.parameters import (
     residual_jacobian,
     target_points,
 )
-from profiletool.joints.steps import Linear, badness, built_step, free_step, taught
+from profiletool.joints.steps import Linear, badness, built_step, free_step
 from profiletool.records import FloatArray, Profile, Shape
 
 S = TypeVar("S")
 
 _REACH, _SHORTEST = 3.0, 0.1  # steps over the scale; the share of that below which it gives up
 _MOST_FREE, _MOST_BUILT = 5, 5
-_WORTH = 0.9  # of the badness: a step that promises less is not taken
+_ROUNDS = 5  # of a search by the model
+_WORTH = 0.8  # of the badness: a step that promises less is not taken
 _SPARE_MM = 0.5  # how far the tube goes on beyond the profile's end
 
 
@@ -110,6 +111,7 @@ class Corrected(Generic[S]):
 
 def correct(
     bench: Bench[S],
+    model: Model,
     parameters: Parameters,
     vector: FloatArray,
     profile: Profile,
@@ -122,6 +124,8 @@ def correct(
     Parameters
     ----------
     bench : Bench
+    model : Model
+        Says how derivatives change on the way.
     parameters : Parameters
     vector : (size,)
         The first guess.
@@ -137,7 +141,7 @@ def correct(
     CannotBend
         When the first guess cannot be bent.
     """
-    loop = _Loop(bench, profile, interference_mm, say)
+    loop = _Loop(bench, model, profile, interference_mm, say)
     best = loop.free(loop.trial(parameters, vector, None, "first guess"))
     return Corrected(loop.built(best, steps), tuple(loop.rms))
 
@@ -146,27 +150,29 @@ class _Loop(Generic[S]):
     """The trials of one correction."""
 
     def __init__(
-        self, bench: Bench[S], profile: Profile, interference_mm: float, say: Callable[[str], None]
+        self,
+        bench: Bench[S],
+        model: Model,
+        profile: Profile,
+        interference_mm: float,
+        say: Callable[[str], None],
     ) -> None:
-        self._bench, self._interference, self._say = bench, interference_mm, say
+        self._bench, self._model = bench, model
+        self._interference, self._say = interference_mm, say
         self._points = target_points(profile)
         self.rms: list[float] = []
 
     def free(self, best: Trial[S]) -> Trial[S]:
         """Take free steps as long as they pay."""
-        share, model = 1.0, None
+        share, known = 1.0, None
         for _ in range(_MOST_FREE):
-            if model is None:
-                model = self._model(best)
-            target = free_step(model, share * _REACH * model.scale)
-            if self._promised(model, target) > _WORTH * self._worth(best):
+            known = known or self._known(best)
+            target, promised = known.free(share)
+            if promised > _WORTH * self._worth(best):
                 break
             trial = self._tried(best, target, "all numbers free")
-            gain = np.inf if trial is None else self._worth(trial) / self._worth(best)
-            if trial is not None and gain < 1.0:
-                best, model = trial, None
-                if gain > _WORTH:
-                    break
+            if trial is not None and self._worth(trial) < self._worth(best):
+                best, known = trial, None
             else:
                 share *= 0.4
                 if share < _SHORTEST:
@@ -177,14 +183,13 @@ class _Loop(Generic[S]):
         """Go to numbers that can be built, and on from there."""
         if not max(steps.alpha, steps.place, steps.pressure) > 0.0:
             return best
-        model, found = self._model(best), None
+        known, found = self._known(best), None
         tried = list[FloatArray]()
         for _ in range(_MOST_BUILT):
-            step = _step_sizes(model.vector, best.parameters, steps)
-            target = built_step(model, step, _REACH * model.scale)
+            target, promised = known.built(_step_sizes(best.vector, best.parameters, steps))
             if any(np.allclose(target, other, atol=1e-9) for other in tried):
                 break
-            if found is not None and self._promised(model, target) > _WORTH * self._worth(found):
+            if found is not None and promised > _WORTH * self._worth(found):
                 break
             tried.append(target)
             trial = self._tried(best, target, "in steps that can be built")
@@ -192,13 +197,10 @@ class _Loop(Generic[S]):
                 break
             if found is None or self._worth(trial) < self._worth(found):
                 best = found = trial
-                model = self._model(best)
+                known = self._known(best)
             else:
-                model = taught(model, target, trial.feet.gap)
+                known = known.taught(target, trial.feet.gap)
         return best if found is None else found
-
-    def _promised(self, model: Linear, vector: FloatArray) -> float:
-        return float(badness(model.predicted(vector), self._interference))
 
     def _worth(self, trial: Trial[S]) -> float:
         return float(badness(trial.feet.gap, self._interference))
@@ -224,17 +226,83 @@ class _Loop(Generic[S]):
         )
         return Trial(parameters, vector, shape, found, state)
 
-    def _model(self, trial: Trial[S]) -> Linear:
+    def _known(self, trial: Trial[S]) -> _Known:
         low, high = trial.parameters.bounds()
-        return Linear(
+        linear = Linear(
             gap=trial.feet.gap,
             jacobian=residual_jacobian(trial.feet, self._bench.motion(trial)),
             vector=trial.vector,
+            centre=trial.vector,
             low=low,
             high=high,
             scale=trial.parameters.scale(),
             interference_mm=self._interference,
         )
+        return _Known(linear, trial.parameters, self._model, self._points)
+
+
+@dataclass(frozen=True)
+class _Known:
+    """What is known around a trial: its gaps and their derivatives, bent on by a model.
+
+    The model's gaps are shifted so that they and their derivatives agree with the bench's at the
+    trial; what remains of the model is how the derivatives change from there.
+    """
+
+    linear: Linear
+    parameters: Parameters
+    model: Model
+    points: FloatArray
+
+    def free(self, share: float) -> tuple[FloatArray, float]:
+        """Find the best vector within a share of the reach, and the badness it promises."""
+        reach = share * _REACH * self.linear.scale
+        return self._sought(lambda linear: free_step(linear, reach))
+
+    def built(self, step: FloatArray) -> tuple[FloatArray, float]:
+        """Find the same among multiples of ``step`` (size,)."""
+        reach = _REACH * self.linear.scale
+        # Coarse steps stay next to where the model holds best.
+        reach = np.where(step > 0.5 * self.linear.scale, np.minimum(step, reach), reach)
+        return self._sought(lambda linear: built_step(linear, step, reach))
+
+    def taught(self, vector: FloatArray, gap: FloatArray) -> _Known:
+        """Correct the derivatives by the gaps that were found at another vector."""
+        missed = gap - self._near(self._bent(vector), vector).gap
+        way = (vector - self.linear.vector) / self.linear.scale
+        turned = np.outer(missed, way / self.linear.scale) / float(way @ way)
+        return replace(self, linear=replace(self.linear, jacobian=self.linear.jacobian + turned))
+
+    def _sought(self, step: Callable[[Linear], FloatArray]) -> tuple[FloatArray, float]:
+        base = self.linear
+        best, least = step(base), np.inf
+        at = best
+        for _ in range(_ROUNDS):
+            near = self._near(self._bent(at), at)
+            promised = float(badness(near.gap, base.interference_mm))
+            if promised < least:
+                best, least = at, promised
+            after = step(near)
+            if np.allclose(after, at, atol=1e-4 * base.scale.min()):
+                break
+            at = after
+        return best, least
+
+    def _bent(self, vector: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Gaps and derivatives by the model alone."""
+        at = self.parameters.unpack(vector)
+        shape = self.model.shape(at.chain, at.pressure, at.pose, self.parameters.sign)
+        found = feet(shape.facing, self.points, self.parameters.sign)
+        motion = facing_motion(self.parameters, self.model, vector, shape)
+        return found.gap, residual_jacobian(found, motion)
+
+    def _near(self, bent: tuple[FloatArray, FloatArray], vector: FloatArray) -> Linear:
+        """Gaps and derivatives at another vector: the model's, shifted."""
+        base = self.linear
+        gap, jacobian = self._bent(base.vector)
+        turned = base.jacobian - jacobian
+        off = base.gap - gap + turned @ (vector - base.vector)
+        return replace(base, vector=vector, gap=bent[0] + off, jacobian=bent[1] + turned)
 
 
 def _step_sizes(vector: FloatArray, parameters: Parameters, steps: Steps) -> FloatArray:

@@ -7,7 +7,7 @@ brings the shape nearer.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
@@ -34,8 +34,9 @@ class Linear:
     gap : (M,) mm
         See `profiletool.joints.parameters.Feet`.
     jacobian : (M, q)
-    vector, low, high, scale : (q,)
-        Where the gaps were found, the bounds, and changes that matter about equally.
+    vector, centre, low, high, scale : (q,)
+        Where the gaps were found, where better ones are looked for nearby, the bounds, and changes
+        that matter about equally.
     interference_mm : float
         How deep the tube may lie in the object.
     """
@@ -43,6 +44,7 @@ class Linear:
     gap: FloatArray
     jacobian: FloatArray
     vector: FloatArray
+    centre: FloatArray
     low: FloatArray
     high: FloatArray
     scale: FloatArray
@@ -52,14 +54,6 @@ class Linear:
         """Gaps (M,) at another vector."""
         gap: FloatArray = self.gap + self.jacobian @ (vector - self.vector)
         return gap
-
-
-def taught(model: Linear, vector: FloatArray, gap: FloatArray) -> Linear:
-    """Correct a model by the gaps (M,) found at another vector (q,): Broyden's update."""
-    way = (vector - model.vector) / model.scale
-    missed = gap - model.predicted(vector)
-    correction = np.outer(missed, way / model.scale) / float(way @ way)
-    return replace(model, jacobian=model.jacobian + correction)
 
 
 def badness(gap: FloatArray, interference_mm: float) -> FloatArray:
@@ -76,7 +70,7 @@ def free_step(
     at: FloatArray | None = None,
     damping_mm: float = _DAMPING,
 ) -> FloatArray:
-    """Best vector (q,) within the bounds and ``reach`` (q,) of the model's own.
+    """Best vector (q,) within the bounds and ``reach`` (q,) of the model's centre.
 
     Where ``held`` is true, numbers stay as they are in ``at``.
     """
@@ -85,20 +79,19 @@ def free_step(
     found = at.copy()
     if not free.any():
         return found
-    low = np.maximum(model.low, model.vector - reach)[free]
-    high = np.minimum(model.high, model.vector + reach)[free]
+    low = np.maximum(model.low, model.centre - reach)[free]
+    high = np.minimum(model.high, model.centre + reach)[free]
     high = np.maximum(high, low + 1e-9)
     base = np.where(free, model.vector, at)
     gap, jacobian = model.predicted(base), model.jacobian[:, free] * model.scale[free]
     start = model.vector[free]
     damping = damping_mm * np.sqrt(len(gap)) * np.eye(int(free.sum()))
+    away = (start - model.centre[free]) / model.scale[free]
     deep = np.zeros(len(gap), dtype=bool)
     for _ in range(5):
         extra = np.sqrt(_WEIGHT)
         A = np.concatenate([jacobian, damping, extra * jacobian[deep]])
-        b = np.concatenate(
-            [gap, np.zeros(len(damping)), extra * (gap + model.interference_mm)[deep]]
-        )
+        b = np.concatenate([gap, damping @ away, extra * (gap + model.interference_mm)[deep]])
         bounds = ((low - start) / model.scale[free], (high - start) / model.scale[free])
         change = lsq_linear(A, -b, bounds, method="bvls").x
         now = gap + jacobian @ change < -model.interference_mm
@@ -112,16 +105,15 @@ def free_step(
 def built_step(model: Linear, step: FloatArray, reach: FloatArray) -> FloatArray:
     """Best vector (q,) whose numbers are multiples of ``step`` (q,); 0 leaves a number free.
 
-    Those with coarse steps stay within one step of where the model holds best, its own vector.
+    All stay within ``reach`` (q,) of the model's centre.
     """
     discrete = step > 0.0
-    reach = np.where(step > 0.5 * model.scale, np.minimum(step, reach), reach)
     if not discrete.any():
         return free_step(model, reach)
     size = np.where(discrete, step, 1.0)
     low, high = np.ceil(model.low / size - 1e-9), np.floor(model.high / size + 1e-9)
-    low = np.clip(np.ceil((model.vector - reach) / size - 1e-9), low, high)
-    high = np.clip(np.floor((model.vector + reach) / size + 1e-9), low, high)
+    low = np.clip(np.ceil((model.centre - reach) / size - 1e-9), low, high)
+    high = np.clip(np.floor((model.centre + reach) / size + 1e-9), low, high)
     strength = np.linalg.norm(model.jacobian, axis=0) * size
     held = np.zeros(len(step), dtype=bool)
     found = free_step(model, reach, damping_mm=_BUILT_DAMPING)
@@ -158,7 +150,7 @@ def _searched(
     weight = _BUILT_DAMPING / model.scale
 
     def worth(gaps: FloatArray, vectors: FloatArray) -> FloatArray:
-        far = ((vectors - model.vector) * weight)[..., discrete]
+        far = ((vectors - model.centre) * weight)[..., discrete]
         total: FloatArray = badness(gaps, model.interference_mm) + np.sum(far**2, axis=-1)
         return total
 
