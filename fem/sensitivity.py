@@ -99,7 +99,9 @@ def flow_to(rates: Sensitivities, known: Actuator, new: Actuator, rise: float) -
     return flow
 
 
-def sensitivities(mesh: Mesh, x: FloatArray, pressure: float, threads: int = 2) -> Sensitivities:
+def sensitivities(
+    mesh: Mesh, x: FloatArray, pressure: float, threads: int = 2, *, angles: bool = True
+) -> Sensitivities:
     """Differentiate an equilibrium.
 
     Parameters
@@ -109,6 +111,9 @@ def sensitivities(mesh: Mesh, x: FloatArray, pressure: float, threads: int = 2) 
         Nodal positions in equilibrium, mm.
     pressure : float, MPa
     threads : {1, 2}
+    angles : bool
+        Whether to differentiate the joint angles and the volume too, half of the work; they are
+        NaN otherwise.
 
     Raises
     ------
@@ -131,10 +136,10 @@ def sensitivities(mesh: Mesh, x: FloatArray, pressure: float, threads: int = 2) 
             for family in changes:
                 rhs += _pulls(system, x, pressure, family)
             flows = inverse.solve(np.array(rhs))
-            rates = [_rate(system, x, forces, flows[0], None)]
+            rates = [_rate(system, x, forces, flows[0], None, angles)]
             every = [change for family in changes for change in family]
             rates += [
-                _rate(system, x, forces, du, change)
+                _rate(system, x, forces, du, change, angles)
                 for du, change in zip(flows[1:], every, strict=True)
             ]
             return Sensitivities(
@@ -226,7 +231,12 @@ def _felt(system: System, segment: int | None) -> NDArray[np.bool_]:
 
 
 def _rate(
-    system: System, x: FloatArray, forces: Forces, du: FloatArray, parameter: _Change | None
+    system: System,
+    x: FloatArray,
+    forces: Forces,
+    du: FloatArray,
+    parameter: _Change | None,
+    angles: bool,
 ) -> Rate:
     """Read a rate off the flow du (count,); no parameter stands for the pressure."""
     mesh = system.mesh
@@ -238,16 +248,21 @@ def _rate(
         near = mesh
         if parameter is not None:
             near = remesh(mesh, parameter.change(mesh.actuator, sign * size), gauze=False)
-            if parameter.segment is None:
+            if parameter.segment is None and angles:
                 near = _changed(mesh, near.actuator)
                 grown += sign * _enclosed(near, settle(x, near)) / (2.0 * size)
         ends.append(near)
-        theta.append(_angles(near, x + sign * size * moved))
+        theta.append(
+            _angles(near, x + sign * size * moved)
+            if angles
+            else np.full(len(mesh.actuator.windows), np.nan)
+        )
+    volume = float(forces.volume_gradient @ du) + grown if angles else np.nan
     return Rate(
         theta=(theta[0] - theta[1]) / (2.0 * size),
         facing=measure.surface_line(mesh, moved, np.radians(270.0)),
         z=(ends[0].z - ends[1].z) / (2.0 * size),
-        volume=(2.0 if mesh.half else 1.0) * (float(forces.volume_gradient @ du) + grown),
+        volume=(2.0 if mesh.half else 1.0) * volume,
         moved=moved,
     )
 

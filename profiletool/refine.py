@@ -64,7 +64,8 @@ class FeBench:
 def rates_of(trial: Trial[Solution]) -> Sensitivities:
     """Differentiate a trial's state."""
     solution = trial.state
-    return sensitivities(solution.mesh, solution.states[-1].x, trial.actuator.pressure)
+    x, pressure = solution.states[-1].x, trial.actuator.pressure
+    return sensitivities(solution.mesh, x, pressure, angles=False)
 
 
 def motion_of(trial: Trial[Solution], rates: Sensitivities) -> FloatArray:

@@ -25,7 +25,12 @@ def sensitivity_of(design: Design, run: Run, profile: Profile) -> tuple[Sensitiv
     """
     solution, shape = run.solution, run.verification.last.shape
     try:
-        rates = sensitivities(solution.mesh, solution.states[-1].x, design.pressure_bar / _BAR)
+        rates = sensitivities(
+            solution.mesh,
+            solution.states[-1].x,
+            design.pressure_bar / _BAR,
+            angles=False,
+        )
     except FemError:
         return ()
     sign = side_sign(design.source.side)

@@ -34,7 +34,8 @@ from profiletool.records import (
     side_sign,
 )
 
-STEPS = 10  # pressures that are reported where nothing else is asked for
+STEPS = 10  # pressures that are reported where nothing else is asked for,
+CHECK_STEPS = 5  # and where a design is checked
 DECIMALS = 4  # of what FE puts into design.json: far above the noise of the last bits
 LYING = Pose(0.0, 0.0, 0.0)  # an actuator without an object lies along x ...
 DOWN = -1.0  # ... and bends down
@@ -77,10 +78,12 @@ class Check:
         return self.run.verification.last.shape if done and self.run is not None else None
 
 
-def pressures_to(pressure_bar: float, step_bar: float | None = None) -> tuple[float, ...]:
-    """Give the pressures up to one, bar: ten equal steps, or steps of a given size."""
+def pressures_to(
+    pressure_bar: float, step_bar: float | None = None, steps: int = STEPS
+) -> tuple[float, ...]:
+    """Give the pressures up to one, bar: so many equal steps, or steps of a given size."""
     if step_bar is None:
-        return tuple(pressure_bar * (k + 1) / STEPS for k in range(STEPS))
+        return tuple(pressure_bar * (k + 1) / steps for k in range(steps))
     count = int(np.ceil(pressure_bar / step_bar - 1e-9))
     return (*(round(step_bar * k, 9) for k in range(1, count)), pressure_bar)
 
@@ -213,7 +216,9 @@ def inflate(
     )
 
 
-def run_design(design: Design, pressure_bar: float, progress: Progress | None = None) -> Run:
+def run_design(
+    design: Design, pressure_bar: float, progress: Progress | None = None, steps: int = STEPS
+) -> Run:
     """Run a design up to a pressure, in its own base pose.
 
     Raises
@@ -222,7 +227,7 @@ def run_design(design: Design, pressure_bar: float, progress: Progress | None = 
     """
     return inflate(
         actuator_of(design),
-        pressures_to(pressure_bar),
+        pressures_to(pressure_bar, steps=steps),
         design.base_pose,
         side_sign(design.source.side),
         thread_pitch_mm=design.gauze.pitch_mm / design.gauze.turns,
@@ -233,7 +238,7 @@ def run_design(design: Design, pressure_bar: float, progress: Progress | None = 
 def check(design: Design, profile: Profile, progress: Progress | None = None) -> Check:
     """Verify a design at its operating pressure; a failure leaves it unverified and says why."""
     try:
-        run = run_design(design, design.pressure_bar, progress)
+        run = run_design(design, design.pressure_bar, progress, CHECK_STEPS)
     except NotConverged as error:
         return Check(design, None, shortly(error))
     except BadGeometry as error:

@@ -32,6 +32,7 @@ _REACH, _SHORTEST = 3.0, 0.1  # steps over the scale; the share of that below wh
 _MOST_FREE, _MOST_BUILT = 5, 5
 _ROUNDS = 5  # of a search by the model
 _WORTH = 0.8  # of the badness: a step that promises less is not taken
+_ENOUGH_MM = 0.3  # RMS of a shape whose numbers will be rounded: rounding costs as much
 _SPARE_MM = 0.5  # how far the tube goes on beyond the profile's end
 
 
@@ -142,7 +143,9 @@ def correct(
         When the first guess cannot be bent.
     """
     loop = _Loop(bench, model, profile, interference_mm, say)
-    best = loop.free(loop.trial(parameters, vector, None, "first guess"))
+    coarse = max(steps.alpha, steps.place) > 0.0
+    first = loop.trial(parameters, vector, None, "first guess")
+    best = loop.free(first, _ENOUGH_MM if coarse else 0.0)
     return Corrected(loop.built(best, steps), tuple(loop.rms))
 
 
@@ -162,10 +165,12 @@ class _Loop(Generic[S]):
         self._points = target_points(profile)
         self.rms: list[float] = []
 
-    def free(self, best: Trial[S]) -> Trial[S]:
-        """Take free steps as long as they pay."""
+    def free(self, best: Trial[S], enough_mm: float) -> Trial[S]:
+        """Take free steps as long as they pay and the shape is farther off than is enough."""
         share, known = 1.0, None
         for _ in range(_MOST_FREE):
+            if self._worth(best) < enough_mm**2:
+                break
             known = known or self._known(best)
             target, promised = known.free(share)
             if promised > _WORTH * self._worth(best):
