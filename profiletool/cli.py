@@ -244,7 +244,7 @@ def design(
         say(f"written: {folder}")
         if result.reasons:
             raise Infeasible(
-                f"no design within the limits ({result.reasons[0]}); "
+                f"no design within the limits ({'; '.join(result.reasons[:2])}); "
                 f"the best attempt is in {folder}, marked infeasible"
             )
         if result.check is not None and result.check.failure is not None:
