@@ -1,0 +1,157 @@
+"""First-order errors of the bent shape, on a small actuator of two opposite joints."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fem.errors import FemError
+from fem.sensitivity import Sensitivities
+from profiletool import sensitivity, verify
+from profiletool.designfile import load_design
+from profiletool.joints.parameters import feet, target_points
+from profiletool.profile.curve import arc_length
+from profiletool.records import Design, FloatArray, Joint, Pose, Profile, Sensitivity, Shape
+from profiletool.sensitivity import sensitivity_of
+
+BAR = 1.0
+
+
+def two_joints(samples: Path) -> Design:
+    paper = load_design(samples / "paper_bulb.json")
+    joints = (
+        Joint(1, 15.0, 8.0, 110.0, 270.0, 20.0, 20.0, None, 14.0),
+        Joint(2, 11.0, 6.0, 140.0, 90.0, 10.0, 10.0, None, 29.0),
+    )
+    return replace(
+        paper,
+        joints=joints,
+        tube=replace(paper.tube, length_mm=40.0, root_mm=14.0),
+        base_pose=Pose(2.0, 1.0, 200.0),
+        pressure_bar=BAR,
+        warnings=(),
+    )
+
+
+@pytest.fixture(scope="module")
+def design(samples: Path) -> Design:
+    return two_joints(samples)
+
+
+@pytest.fixture(scope="module")
+def run(design: Design) -> verify.Run:
+    return verify.run_design(design, BAR)
+
+
+def along(line: FloatArray) -> Profile:
+    """A target that runs along a line."""
+    at = arc_length(line)
+    s = np.linspace(0.0, at[-1], round(at[-1] / 0.1) + 1)
+    points = np.column_stack([np.interp(s, at, line[:, k]) for k in (0, 1)])
+    heading = np.unwrap(np.arctan2(*np.gradient(points, axis=0).T[::-1]))
+    nothing = np.zeros(len(s))
+    return Profile(points, s, heading, nothing, nothing.astype(bool), "left", None)
+
+
+@pytest.fixture(scope="module")
+def profile(run: verify.Run) -> Profile:
+    return along(run.verification.last.shape.facing)
+
+
+@pytest.fixture(scope="module")
+def found(design: Design, run: verify.Run, profile: Profile) -> tuple[Sensitivity, ...]:
+    return sensitivity_of(design, run, profile)
+
+
+def off(changed: Shape, profile: Profile) -> FloatArray:
+    """How far a line lies off a profile that it lay on."""
+    return feet(changed.facing, target_points(profile)[:-4], 1.0).gap
+
+
+def test_entries_in_their_order(found: tuple[Sensitivity, ...]) -> None:
+    assert [entry.what for entry in found] == [
+        "pressure 0.05 bar off",
+        "one thread more or less uncut",
+        "cut 2 mm longer or shorter",
+        "joint 1 mm off its place",
+        "wall 5 % off",
+        "scale 1 % off",
+    ]
+    assert [entry.joint is None for entry in found] == [True, False, False, False, True, True]
+    assert all(entry.max_mm > entry.rms_mm > 0.0 for entry in found)
+
+
+def test_more_pressure_to_first_order(
+    design: Design, profile: Profile, found: tuple[Sensitivity, ...]
+) -> None:
+    more = off(verify.run_design(design, BAR + 0.05).verification.last.shape, profile)
+    assert found[0].rms_mm == pytest.approx(np.sqrt(np.mean(more**2)), rel=0.1, abs=0.01)
+    assert found[0].max_mm == pytest.approx(np.abs(more).max(), rel=0.1, abs=0.01)
+    assert found[0].rms_mm > 0.05
+
+
+@pytest.mark.parametrize("entry", [1, 2, 3])
+def test_of_what_every_joint_has_the_one_that_matters_most(
+    entry: int, design: Design, profile: Profile, found: tuple[Sensitivity, ...]
+) -> None:
+    """Each joint changed by the whole error, and FE from rest again."""
+    worst = []
+    for k in (0, 1):
+        joints = list(design.joints)
+        length = 0.0
+        if entry == 1:
+            alpha = joints[k].alpha_closed_deg + np.degrees(0.2)
+            joints[k] = replace(joints[k], alpha_closed_deg=alpha)
+        elif entry == 2:  # the wrapped lengths stay, and all behind moves on
+            length = 2.0
+            joints[k] = replace(
+                joints[k], openF_mm=joints[k].openF_mm + 2.0, centre_mm=joints[k].centre_mm + 1.0
+            )
+        else:
+            length = 1.0
+            joints[k] = replace(joints[k], centre_mm=joints[k].centre_mm + 1.0)
+        for j in range(k + 1, 2):
+            joints[j] = replace(joints[j], centre_mm=joints[j].centre_mm + length)
+        tube = replace(design.tube, length_mm=design.tube.length_mm + length)
+        changed = replace(design, joints=tuple(joints), tube=tube)
+        shape = verify.inflate(
+            verify.actuator_of(changed), [BAR], design.base_pose, 1.0
+        ).verification.last.shape
+        worst.append(float(np.sqrt(np.mean(off(shape, profile) ** 2))))
+    assert found[entry].joint == int(np.argmax(worst)) + 1
+    assert found[entry].rms_mm == pytest.approx(max(worst), rel=0.3)  # whole errors are not small
+
+
+def test_scale_on_a_straight_profile(design: Design, run: verify.Run) -> None:
+    """A line and a profile that leave each other at 0.1 rad: 1 % of what lies across."""
+    x = np.linspace(0.0, 40.0, 161)
+    line = np.column_stack([x, np.zeros(161)])
+    ramp = along(np.column_stack([0.99 * x * np.cos(0.1), 0.99 * x * np.sin(0.1)]))
+    seen = run.verification
+    last = replace(seen.last, shape=replace(seen.last.shape, along=x, facing=line))
+    straight = replace(run, verification=replace(seen, states=(*seen.states[:-1], last)))
+    entry = sensitivity_of(design, straight, ramp)[-1]
+    most = 0.01 * ramp.length_mm * np.sin(0.1)
+    assert entry.max_mm == pytest.approx(most, abs=0.0051)
+    assert entry.rms_mm == pytest.approx(most / np.sqrt(3.0), abs=0.0051)
+
+
+def test_thicker_wall_less_bent(
+    design: Design, profile: Profile, found: tuple[Sensitivity, ...]
+) -> None:
+    thick = replace(design, tube=replace(design.tube, wall_mm=2.1))
+    changed = off(verify.run_design(thick, BAR).verification.last.shape, profile)
+    assert found[4].rms_mm == pytest.approx(np.sqrt(np.mean(changed**2)), rel=0.15, abs=0.01)
+
+
+def test_nothing_where_the_tangent_allows_no_derivatives(
+    design: Design, run: verify.Run, profile: Profile, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def singular(*_: object, **__: object) -> Sensitivities:
+        raise FemError("singular")
+
+    monkeypatch.setattr(sensitivity, "sensitivities", singular)
+    assert sensitivity_of(design, run, profile) == ()
