@@ -129,7 +129,7 @@ def test_scale_on_a_straight_profile(design: Design, run: verify.Run) -> None:
     """A line and a profile that leave each other at 0.1 rad: 1 % of what lies across."""
     x = np.linspace(0.0, 40.0, 161)
     line = np.column_stack([x, np.zeros(161)])
-    ramp = along(np.column_stack([0.99 * x * np.cos(0.1), 0.99 * x * np.sin(0.1)]))
+    ramp = along(np.column_stack([0.99 * x * np.cos(0.1), 5.0 + 0.99 * x * np.sin(0.1)]))
     seen = run.verification
     last = replace(seen.last, shape=replace(seen.last.shape, along=x, facing=line))
     straight = replace(run, verification=replace(seen, states=(*seen.states[:-1], last)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -27,12 +28,13 @@ def linear(seed: int, size: int = 4, count: int = 60, **changes: object) -> Line
     fields: dict[str, object] = {
         "gap": gap, "jacobian": jacobian, "vector": vector, "low": np.full(size, -np.inf),
         "high": np.full(size, np.inf), "scale": scale, "interference_mm": ANY,
+        "centre": vector + rng.uniform(-0.3, 0.3, size) * scale,
     }  # fmt: skip
     return Linear(**{**fields, **changes})  # type: ignore[arg-type]
 
 
 def objective(model: Linear, vector: FloatArray, damping: float) -> float:
-    far = damping * (vector - model.vector) / model.scale
+    far = damping * (vector - model.centre) / model.scale
     return float(badness(model.predicted(vector), model.interference_mm) + far @ far)
 
 
@@ -40,16 +42,17 @@ def test_where_nothing_binds_it_is_damped_least_squares() -> None:
     model = linear(0)
     A = model.jacobian * model.scale
     normal = A.T @ A + FREE**2 * len(A) * np.eye(4)
-    expected = model.vector - np.linalg.solve(normal, A.T @ model.gap) * model.scale
+    pull = FREE**2 * len(A) * (model.vector - model.centre) / model.scale
+    expected = model.vector - np.linalg.solve(normal, A.T @ model.gap + pull) * model.scale
     assert free_step(model, np.full(4, np.inf)) == pytest.approx(expected, rel=1e-9)
 
 
-def test_what_moves_nothing_stays() -> None:
+def test_what_moves_nothing_stays_at_the_centre() -> None:
     model = linear(1)
     dead = model.jacobian * [1.0, 0.0, 1.0, 1.0]
     found = free_step(linear(1, jacobian=dead), np.full(4, np.inf))
-    assert found[1] == pytest.approx(model.vector[1], abs=1e-12)
-    assert np.abs(found - model.vector)[[0, 2, 3]].min() > 1e-3
+    assert found[1] == pytest.approx(model.centre[1], abs=1e-12)
+    assert np.abs(found - model.centre)[[0, 2, 3]].min() > 1e-3
 
 
 @given(
@@ -63,13 +66,13 @@ def test_bounds_reach_and_held_numbers(
 ) -> None:
     rng = np.random.default_rng(seed)
     model = linear(seed)
-    low, high = (model.vector + s * rng.uniform(0.1, 3.0, 4) * model.scale for s in (-1.0, 1.0))
+    low, high = (model.centre + s * rng.uniform(0.1, 3.0, 4) * model.scale for s in (-1.0, 1.0))
     model = linear(seed, low=low, high=high, interference_mm=depth)
     reach, kept = share * model.scale, np.array(held)
     at = model.vector + rng.uniform(-0.1, 0.1, 4) * model.scale
     found = free_step(model, reach, kept, at)
     assert (found[kept] == at[kept]).all()
-    least, most = np.maximum(low, model.vector - reach), np.minimum(high, model.vector + reach)
+    least, most = np.maximum(low, model.centre - reach), np.minimum(high, model.centre + reach)
     assert (found[~kept] >= least[~kept] - 1e-12).all()
     assert (found[~kept] <= most[~kept] + 1e-12).all()
     # No other vector of the box is better.
@@ -91,11 +94,12 @@ def test_depth_pulls_out_of_the_object() -> None:
     # Ten points on a line that shifts: half of them 1 mm out, half 1 mm in.
     one = np.ones(10)
     model = Linear(
-        np.repeat([1.0, -1.0], 5), one[:, None], np.zeros(1), np.full(1, -9.0), np.full(1, 9.0),
-        np.ones(1), ANY,
+        gap=np.repeat([1.0, -1.0], 5), jacobian=one[:, None], vector=np.zeros(1),
+        centre=np.zeros(1), low=np.full(1, -9.0), high=np.full(1, 9.0), scale=np.ones(1),
+        interference_mm=ANY,
     )  # fmt: skip
     assert free_step(model, np.full(1, 5.0)) == pytest.approx([0.0], abs=1e-9)
-    strict = Linear(**{**vars(model), "interference_mm": 0.3})
+    strict = replace(model, interference_mm=0.3)
     # d/dt of (1 + t)^2 + (t - 1)^2 + 4 (t - 0.7)^2 + 2 (0.1 t)^2
     assert free_step(strict, np.full(1, 5.0)) == pytest.approx([2.8 / 6.02], rel=1e-6)
     assert badness(np.array([-0.5, 0.1]), 0.3) == pytest.approx((0.26 + 4.0 * 0.04) / 2.0)
@@ -114,7 +118,7 @@ def refitted(model: Linear, vector: FloatArray, step: FloatArray) -> float:
     gap = model.predicted(vector)
     rest = model.jacobian[:, ~discrete]
     gap = gap - rest @ np.linalg.lstsq(rest, gap, rcond=None)[0]
-    far = (BUILT * (vector - model.vector) / model.scale)[discrete]
+    far = (BUILT * (vector - model.centre) / model.scale)[discrete]
     return float(badness(gap, model.interference_mm) + far @ far)
 
 
@@ -122,7 +126,7 @@ def refitted(model: Linear, vector: FloatArray, step: FloatArray) -> float:
 def test_built_numbers_are_multiples_within_bounds(seed: int) -> None:
     model = linear(seed, 7)
     step, reach = steps_of(model), 3.0 * model.scale
-    low, high = model.vector - 1.3 * model.scale, model.vector + 1.7 * model.scale
+    low, high = model.centre - 1.3 * model.scale, model.centre + 1.7 * model.scale
     found = built_step(linear(seed, 7, low=low, high=high), step, reach)
     whole = found[:-1] / step[:-1]
     assert whole == pytest.approx(np.round(whole), abs=1e-9)
@@ -147,7 +151,7 @@ def test_as_good_as_trying_everything(seed: int) -> None:
     found = built_step(model, step, reach)
     numbers = [
         np.arange(np.ceil((v - r) / s), np.floor((v + r) / s) + 1.0) * s
-        for v, r, s in zip(model.vector[:3], reach[:3], step[:3], strict=True)
+        for v, r, s in zip(model.centre[:3], reach[:3], step[:3], strict=True)
     ]
     tried = [np.array([*some, model.vector[3]]) for some in product(*numbers)]
     assert len(tried) >= 7**3
