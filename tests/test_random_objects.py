@@ -50,5 +50,5 @@ def test_any_smooth_object(
     assert design.feasible == (not result.reasons)
     if design.feasible:
         assert all(j.theta_formula_deg >= j.theta_target_deg - 1e-6 for j in design.joints)
-        assert max(s.deviation_mm for s in result.sectors) <= 1.0
+        assert max(s.deviation_mm for s in result.plan.sectors) <= 1.0
     assert template_files(design)["template.dxf"].startswith(b"  0\nSECTION")
