@@ -28,8 +28,9 @@ SHAPE = Shape(LINE[:, 0], LINE, LINE + np.array([0.0, 10.0]), LINE + np.array([0
 
 def state(bar: float, *theta: float, **change: object) -> FeState:
     at_rest = FeState(
-        bar, theta, SHAPE, LINE[: len(theta) + 1] + bar, 2.0 * bar, 1.5, 0.9, 8.0, 1e-7, 1e-3, False
-    )
+        bar, theta, SHAPE, LINE[: len(theta) + 1] + bar, 2.0 * bar, (1.4,) * len(theta), 1.5, 0.9,
+        0.02, 8.0, 1e-7, 1e-3, False,
+    )  # fmt: skip
     return replace(at_rest, **change)
 
 
