@@ -47,6 +47,7 @@ from profiletool.subject import Request, Subject, check_request, drawing_notes, 
 from profiletool.template.unroll import best_seam, off_mesh
 from profiletool.verify import Check, Progress, check
 
+_STABLE_SHARE = 0.97  # of the pressure at which FE loses its stability
 DEPTH_MM = 1.0  # a tube that presses deeper into the object is warned of
 
 
@@ -87,15 +88,15 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
     check_request(request)
     formula = read_formula(request.formula)
     subject = find_subject(request, say)
-    profile, material = subject.profile, request.material
-    make = optimal_plan if request.method == "optimal" else paper_plan
-    plan = make(request, profile, formula, say)
+    profile = subject.profile
+    attempt = _attempt(request, subject, formula, say, progress)
+    lower = _lower(request, attempt)
+    if lower is not None:
+        say(f"once more below {lower.material.max_pressure_bar:.2f} bar, where FE is stable")
+        second = _attempt(lower, subject, formula, say, progress)
+        attempt = second if second.design.verified else attempt
+    plan, shape, checked, design = attempt.plan, attempt.shape, attempt.check, attempt.design
     layout = plan.layout
-    shape = deform(layout.bends(), layout.length_mm, material.radius_mm, layout.pose, profile.sign)
-    design = _design(request, subject, formula, plan, shape)
-    checked = _verified(design, profile, say, progress) if request.verify else None
-    if checked is not None:
-        design = checked.design
     known = (checked.shape if checked is not None else None) or plan.bent
     places = misses(plan, known, profile, request)
     reasons = plan.reasons
@@ -112,6 +113,45 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
         design = replace(design, sensitivity=sensitivity_of(design, checked.run, profile))
     design = replace(design, feasible=not reasons, warnings=tuple(notes))
     return Result(design, reasons, subject, plan, shape, checked, places)
+
+
+@dataclass(frozen=True)
+class _Attempt:
+    """A plan with its design, the formula's shape of it, and its finite-element run."""
+
+    plan: Plan
+    design: Design
+    shape: Shape
+    check: Check | None
+
+
+def _attempt(
+    request: Request,
+    subject: Subject,
+    formula: Formula,
+    say: Callable[[str], None],
+    progress: Progress | None,
+) -> _Attempt:
+    profile, material = subject.profile, request.material
+    make = optimal_plan if request.method == "optimal" else paper_plan
+    plan = make(request, profile, formula, say)
+    layout = plan.layout
+    shape = deform(layout.bends(), layout.length_mm, material.radius_mm, layout.pose, profile.sign)
+    design = _design(request, subject, formula, plan, shape)
+    if not request.verify:
+        return _Attempt(plan, design, shape, None)
+    checked = _verified(design, profile, say, progress)
+    return _Attempt(plan, checked.design, shape, checked)
+
+
+def _lower(request: Request, attempt: _Attempt) -> Request | None:
+    """Ask for less pressure where FE loses its stability below what a refined plan works at."""
+    run = None if attempt.check is None else attempt.check.run
+    ended = None if run is None else run.verification.critical
+    if ended is None or request.method != "optimal" or not request.refine:
+        return None
+    bar = _STABLE_SHARE * ended.pressure_bar
+    return replace(request, material=replace(request.material, max_pressure_bar=bar))
 
 
 def _method_notes(
