@@ -166,10 +166,11 @@ class _Change:
 
 
 def _changes(count: int) -> tuple[tuple[_Change, ...], ...]:
-    """Families of parameters whose segments have no ring in common: alpha, openF, wrapped, wall."""
+    """Families of parameters that can be changed at once: no two have a ring in common."""
     windows, wrapped = range(1, 2 * count, 2), range(0, 2 * count + 1, 2)
     return (
-        tuple(_Change(k, _ANGLE, _alpha(k // 2)) for k in windows),
+        # The bricks of the whole tube end where the sectors do: they move with each alpha.
+        *((_Change(None, _ANGLE, _alpha(k // 2)),) for k in windows),
         tuple(_Change(k, _LENGTH, _stretch(k)) for k in windows),
         tuple(_Change(k, _LENGTH, _stretch(k)) for k in wrapped),
         (_Change(None, _LENGTH, _thicken),),
@@ -186,10 +187,9 @@ def _thicken(actuator: Actuator, amount: float) -> Actuator:
 
 
 def _changed(mesh: Mesh, actuator: Actuator) -> Mesh:
-    """Mesh a changed actuator with as many nodes."""
-    if actuator.wall != mesh.actuator.wall:
-        return make_mesh(actuator, mesh.size, not mesh.half, like=mesh)
-    return remesh(mesh, actuator)
+    """Mesh a changed actuator with as many nodes; its columns move with the sectors' edges."""
+    changed = make_mesh(actuator, mesh.size, not mesh.half, like=mesh)
+    return changed if changed.X.shape == mesh.X.shape else remesh(mesh, actuator)
 
 
 def _pulls(
@@ -209,8 +209,8 @@ def _pulls(
         for parameter in family:
             actuator = parameter.change(actuator, sign * step)
         near = _changed(mesh, actuator)
-        # With the wall the clamped ring and the plug's change as well.
-        at = settle(x, near)
+        # The clamped ring and the plug's change as well.
+        at = settle(x, near, mesh)
         ends.append(System(near, threads=1).forces(at))
     residuals = [forces.residual(pressure) for forces in ends]
     pull = -(residuals[0] - residuals[1]) / (2.0 * step)
@@ -250,7 +250,7 @@ def _rate(
             near = remesh(mesh, parameter.change(mesh.actuator, sign * size), gauze=False)
             if parameter.segment is None and angles:
                 near = _changed(mesh, near.actuator)
-                grown += sign * _enclosed(near, settle(x, near)) / (2.0 * size)
+                grown += sign * _enclosed(near, settle(x, near, mesh)) / (2.0 * size)
         ends.append(near)
         theta.append(
             _angles(near, x + sign * size * moved)

@@ -18,7 +18,7 @@ from fem.mesh import Mesh, make_mesh
 from fem.meshsize import DEFAULT_MESH, MeshSize
 from fem.newton import correct
 from fem.sections import Chart
-from fem.transfer import carry, settle, transfer
+from fem.transfer import settle, transfer
 
 FloatArray = NDArray[np.float64]
 DEFAULT_OPTIONS = Options()
@@ -226,10 +226,10 @@ def solve_near(
             chart = Chart(mesh)
             system = System(mesh, threads)
             try:
-                if flow is None:
+                if flow is None or mesh.X.shape != last.X.shape:
                     start = transfer(last, x, mesh)
                 else:
-                    start = settle(carry(last, _moved(last, x, step * flow), mesh), mesh)
+                    start = settle(_moved(last, x, step * flow), mesh, last)
                 done = correct(system, chart, chart.of(start), pressure, options.tolerance)
             finally:
                 system.close()
@@ -237,7 +237,6 @@ def solve_near(
                 Attempt(pressure, done.iterations, done.factored, done.residual, done.outcome)
             )
             if done.outcome == "converged" and not (done.negative and options.stable):
-                flow = None if flow is None else carry(last, flow, mesh)
                 share, last, x = min(share + step, 1.0), mesh, done.pose.x
             elif step > _LEAST_WAY:
                 step *= 0.5

@@ -44,15 +44,21 @@ def carry(old: Mesh, values: FloatArray, new: Mesh) -> FloatArray:
     return found
 
 
-def settle(x: FloatArray, new: Mesh) -> FloatArray:
-    """Bring nodal positions onto the clamp and the rigid plug."""
+def settle(x: FloatArray, new: Mesh, old: Mesh | None = None) -> FloatArray:
+    """Bring nodal positions onto the clamp and the rigid plug of a mesh.
+
+    ``old`` is the mesh that says what the plug's positions mean, by default the new one.
+    """
     X, found = new.X, x.copy()
+    old = old or new
     found[-1, new.ring :] = X[-1, new.ring :]
     found[0, : new.ring] = X[0, : new.ring]
     # The plug stays rigid to the last bit; its outer nodes say where it is, whatever the wall.
-    rest, now = X[-1, new.outer_ring], found[-1, new.outer_ring]
+    rest, now = old.X[-1, old.outer_ring], x[-1, old.outer_ring]
     R = best_rotation(rest - rest.mean(axis=0), now - now.mean(axis=0))
-    found[-1, : new.ring] = now.mean(axis=0) + (X[-1, : new.ring] - rest.mean(axis=0)) @ R.T
+    arm = X[-1, : new.ring] - rest.mean(axis=0)
+    arm[:, 2] = 0.0  # both are level at rest, wherever along the tube
+    found[-1, : new.ring] = now.mean(axis=0) + arm @ R.T
     return found
 
 

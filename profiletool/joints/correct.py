@@ -33,7 +33,7 @@ _MOST_FREE, _MOST_BUILT = 5, 5
 _ROUNDS = 5  # of a search by the model
 _WORTH = 0.8  # of the badness: a step that promises less is not taken
 _ENOUGH_MM = 0.3  # RMS of a shape whose numbers will be rounded: rounding costs as much
-_SPARE_MM = 0.5  # how far the tube goes on beyond the profile's end
+_SPARE_MM = 1.0  # how far the tube goes on beyond the profile's end
 
 
 @dataclass(frozen=True)
