@@ -12,12 +12,13 @@ import numpy as np
 
 from fem.actuator import Actuator as Tube
 from fem.errors import BadGeometry, NotConverged
+from fem.mesh import Mesh
 from fem.sensitivity import Rate, Sensitivities, flow_to, sensitivities
 from fem.solve import Solution, solve, solve_near
 from profiletool.joints.correct import CannotBend, Trial
 from profiletool.joints.parameters import Actuator, base_axes
 from profiletool.records import FloatArray, Material, Shape
-from profiletool.verify import ended, said, shape_of, shortly, tube_of
+from profiletool.verify import ended, on_line, said, shape_of, shortly, tube_of
 
 
 class FeBench:
@@ -76,7 +77,7 @@ def motion_of(trial: Trial[Solution], rates: Sensitivities) -> FloatArray:
     along, outward = base_axes(float(heading), parameters.sign)
 
     def placed(rate: Rate) -> FloatArray:
-        return placed_motion(rate, shape, solution.mesh.z, (along, outward))
+        return placed_motion(rate, shape, solution.mesh, (along, outward))
 
     grows = parameters.root_grows(trial.vector)
     slide = placed(rates.wrapped[0]) if grows else np.broadcast_to(along, shape.facing.shape)
@@ -93,13 +94,12 @@ def _inner(rates: Sensitivities, placed: Callable[[Rate], FloatArray]) -> list[F
 
 
 def placed_motion(
-    rate: Rate, shape: Shape, z: FloatArray, axes: tuple[FloatArray, FloatArray]
+    rate: Rate, shape: Shape, mesh: Mesh, axes: tuple[FloatArray, FloatArray]
 ) -> FloatArray:
     """Motion of a line's points in the object frame per unit: (N, 2).
 
-    ``z`` are the places of the rings that the rate is known at, ``axes`` unit vectors along the
-    clamped tube and away from the object.
+    ``axes`` are unit vectors along the clamped tube and away from the object.
     """
-    along, outward = (np.interp(shape.along, z, rate.facing[:, k]) for k in (2, 1))
-    moved: FloatArray = along[:, None] * axes[0] + outward[:, None] * axes[1]
-    return moved
+    moved = on_line(mesh, rate.moved, shape.along)
+    placed: FloatArray = moved[:, 2, None] * axes[0] + moved[:, 1, None] * axes[1]
+    return placed

@@ -39,7 +39,7 @@ def sensitivity_of(design: Design, run: Run, profile: Profile) -> tuple[Sensitiv
     found = feet(shape.facing, points, sign)
 
     def off(rate: Rate, amount: float) -> FloatArray:
-        motion = placed_motion(rate, shape, solution.mesh.z, axes)
+        motion = placed_motion(rate, shape, solution.mesh, axes)
         moved: FloatArray = amount * np.einsum("mk,mk->m", found.normal, found.at(motion))
         return moved
 

@@ -339,21 +339,37 @@ def shape_of(mesh: Mesh, state: State, pose: Pose, sign: float) -> Shape:
 
 def _shape(mesh: Mesh, state: State, place: _Place) -> Shape:
     """Lines of the tube at even places, by the elements' own interpolation; then the plug."""
-    z, free = mesh.z, mesh.actuator.free_length
-    along = np.linspace(0.0, mesh.actuator.length, round(mesh.actuator.length / STEP_MM) + 1)
-    inside = np.minimum(along, free)
-    layer = np.clip(np.searchsorted(z, inside, side="right") - 1, 0, mesh.layers - 1)
-    t = (inside - z[layer]) / mesh.heights[layer]
-    end = state.shape.rotation[-1] @ [0.0, 0.0, 1.0]
-    nodes = mesh.outer + (layer * (mesh.ring + mesh.mid))[:, None, None]
+    length = mesh.actuator.length
+    along = np.linspace(0.0, length, round(length / STEP_MM) + 1)
+    beyond = np.maximum(along - mesh.actuator.free_length, 0.0)[:, None]
+    end = beyond * (state.shape.rotation[-1] @ [0.0, 0.0, 1.0])
     facing, far = (
-        place(
-            np.einsum("sn,snj->sj", N, state.x.reshape(-1, 3)[nodes[:, k]])
-            + (along - inside)[:, None] * end
-        )
-        for k, N in (_on_bricks(mesh, 2.0 * t - 1.0, phi) for phi in (-0.5 * np.pi, 0.5 * np.pi))
+        place(on_line(mesh, state.x, along, phi) + end) for phi in (-0.5 * np.pi, 0.5 * np.pi)
     )
     return Shape(along, facing, 0.5 * (facing + far), far)
+
+
+def on_line(
+    mesh: Mesh, nodal: FloatArray, along: FloatArray, phi: float = -0.5 * np.pi
+) -> FloatArray:
+    """Interpolate nodal values to a surface line: (S, 3).
+
+    Parameters
+    ----------
+    mesh : Mesh
+    nodal : (layers + 1, ring + mid, 3)
+    along : (S,) mm
+        Places on the straight tube; beyond the plug's inner face its values count.
+    phi : float
+        rad; by default the object-facing line.
+    """
+    inside = np.minimum(along, mesh.actuator.free_length)
+    layer = np.clip(np.searchsorted(mesh.z, inside, side="right") - 1, 0, mesh.layers - 1)
+    t = (inside - mesh.z[layer]) / mesh.heights[layer]
+    nodes = mesh.outer + (layer * (mesh.ring + mesh.mid))[:, None, None]
+    k, N = _on_bricks(mesh, 2.0 * t - 1.0, phi)
+    values: FloatArray = np.einsum("sn,snj->sj", N, nodal.reshape(-1, 3)[nodes[:, k]])
+    return values
 
 
 def _on_bricks(mesh: Mesh, zeta: FloatArray, phi: float) -> tuple[int, FloatArray]:
