@@ -32,8 +32,8 @@ NUMBERS = Parameters(
 #                  alpha     wrapped place press turn offset
 VECTOR = np.array([1.9, 2.1, 7.0, 13.0, 0.1, 0.05, 0.4])
 NAMES = ("alpha 1", "alpha 2", "wrapped", "place", "pressure", "turn", "offset")
-# Share of the motion that may be missed. Where the tube slides along itself, the line's kinks at the
-# cuts' edges pass the feet: that share is of the differences, not of the derivatives.
+# Share of the motion that may be missed. Where the tube slides along itself, the line's kinks at
+# the cuts' edges pass the feet: that share is of the differences, not of the derivatives.
 MISSED = (0.01, 0.03, 0.12, 0.07, 0.01, 0.001, 0.001)
 
 
