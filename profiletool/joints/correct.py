@@ -8,11 +8,12 @@ built, and what stays free follows.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
+from profiletool.joints.known import Known
 from profiletool.joints.model import Model
 from profiletool.joints.parameters import (
     Actuator,
@@ -23,14 +24,13 @@ from profiletool.joints.parameters import (
     residual_jacobian,
     target_points,
 )
-from profiletool.joints.steps import Linear, badness, built_step, free_step
+from profiletool.joints.steps import Linear, badness
 from profiletool.records import FloatArray, Profile, Shape
 
 S = TypeVar("S")
 
-_REACH, _SHORTEST = 3.0, 0.1  # steps over the scale; the share of that below which it gives up
+_SHORTEST = 0.1  # share of a step's reach below which it gives up
 _MOST_FREE, _MOST_BUILT = 5, 5
-_ROUNDS = 5  # of a search by the model
 _WORTH = 0.8  # of the badness: a step that promises less is not taken
 _ENOUGH_MM = 0.3  # RMS of a shape whose numbers will be rounded: rounding costs as much
 _SPARE_MM = 1.0  # how far the tube goes on beyond the profile's end
@@ -231,7 +231,7 @@ class _Loop(Generic[S]):
         )
         return Trial(parameters, vector, shape, found, state)
 
-    def _known(self, trial: Trial[S]) -> _Known:
+    def _known(self, trial: Trial[S]) -> Known:
         low, high = trial.parameters.bounds()
         linear = Linear(
             gap=trial.feet.gap,
@@ -243,71 +243,7 @@ class _Loop(Generic[S]):
             scale=trial.parameters.scale(),
             interference_mm=self._interference,
         )
-        return _Known(linear, trial.parameters, self._model, self._points)
-
-
-@dataclass(frozen=True)
-class _Known:
-    """What is known around a trial: its gaps and their derivatives, bent on by a model.
-
-    The model's gaps are shifted so that they and their derivatives agree with the bench's at the
-    trial; what remains of the model is how the derivatives change from there.
-    """
-
-    linear: Linear
-    parameters: Parameters
-    model: Model
-    points: FloatArray
-
-    def free(self, share: float) -> tuple[FloatArray, float]:
-        """Find the best vector within a share of the reach, and the badness it promises."""
-        reach = share * _REACH * self.linear.scale
-        return self._sought(lambda linear: free_step(linear, reach))
-
-    def built(self, step: FloatArray) -> tuple[FloatArray, float]:
-        """Find the same among multiples of ``step`` (size,)."""
-        reach = _REACH * self.linear.scale
-        # Coarse steps stay next to where the model holds best.
-        reach = np.where(step > 0.5 * self.linear.scale, np.minimum(step, reach), reach)
-        return self._sought(lambda linear: built_step(linear, step, reach))
-
-    def taught(self, vector: FloatArray, gap: FloatArray) -> _Known:
-        """Correct the derivatives by the gaps that were found at another vector."""
-        missed = gap - self._near(self._bent(vector), vector).gap
-        way = (vector - self.linear.vector) / self.linear.scale
-        turned = np.outer(missed, way / self.linear.scale) / float(way @ way)
-        return replace(self, linear=replace(self.linear, jacobian=self.linear.jacobian + turned))
-
-    def _sought(self, step: Callable[[Linear], FloatArray]) -> tuple[FloatArray, float]:
-        base = self.linear
-        best, least = step(base), np.inf
-        at = best
-        for _ in range(_ROUNDS):
-            near = self._near(self._bent(at), at)
-            promised = float(badness(near.gap, base.interference_mm))
-            if promised < least:
-                best, least = at, promised
-            after = step(near)
-            if np.allclose(after, at, atol=1e-4 * base.scale.min()):
-                break
-            at = after
-        return best, least
-
-    def _bent(self, vector: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Gaps and derivatives by the model alone."""
-        at = self.parameters.unpack(vector)
-        shape = self.model.shape(at.chain, at.pressure, at.pose, self.parameters.sign)
-        found = feet(shape.facing, self.points, self.parameters.sign)
-        motion = facing_motion(self.parameters, self.model, vector, shape)
-        return found.gap, residual_jacobian(found, motion)
-
-    def _near(self, bent: tuple[FloatArray, FloatArray], vector: FloatArray) -> Linear:
-        """Gaps and derivatives at another vector: the model's, shifted."""
-        base = self.linear
-        gap, jacobian = self._bent(base.vector)
-        turned = base.jacobian - jacobian
-        off = base.gap - gap + turned @ (vector - base.vector)
-        return replace(base, vector=vector, gap=bent[0] + off, jacobian=bent[1] + turned)
+        return Known(linear, trial.parameters, self._model, self._points)
 
 
 def _step_sizes(vector: FloatArray, parameters: Parameters, steps: Steps) -> FloatArray:
