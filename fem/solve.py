@@ -237,6 +237,8 @@ def solve_near(
                 Attempt(pressure, done.iterations, done.factored, done.residual, done.outcome)
             )
             if done.outcome == "converged" and not (done.negative and options.stable):
+                # What is expected of the nodes of one mesh says nothing of another's.
+                flow = flow if mesh.X.shape == last.X.shape else None
                 share, last, x = min(share + step, 1.0), mesh, done.pose.x
             elif step > _LEAST_WAY:
                 step *= 0.5

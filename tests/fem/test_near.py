@@ -10,6 +10,7 @@ import pytest
 from fem.actuator import Actuator, Window, chain
 from fem.errors import NotConverged
 from fem.mesh import make_mesh
+from fem.sensitivity import flow_to, sensitivities
 from fem.solve import Solution, between, solve, solve_near
 from fem.transfer import transfer
 
@@ -64,6 +65,28 @@ def test_another_pressure(known: Solution) -> None:
     near = solve_near(ACTUATOR, known, 0.9 * PRESSURE)
     path = solve(ACTUATOR, [0.9 * PRESSURE])
     np.testing.assert_allclose(near.states[-1].theta, path.states[-1].theta, rtol=1e-5)
+
+
+def test_an_expected_motion_saves_steps(known: Solution) -> None:
+    actuator = changed(0.0, 0.5)
+    rates = sensitivities(known.mesh, known.states[-1].x, PRESSURE, angles=False)
+    flow = flow_to(rates, known.mesh.actuator, actuator, -0.02 * PRESSURE)
+    expected = solve_near(actuator, known, 0.98 * PRESSURE, flow=flow)
+    plain = solve_near(actuator, known, 0.98 * PRESSURE)
+    assert expected.factorisations < plain.factorisations
+    np.testing.assert_allclose(expected.states[-1].theta, plain.states[-1].theta, atol=1e-5)
+
+
+def test_an_expected_motion_of_another_mesh_is_left(known: Solution) -> None:
+    # Here the sectors' edges part, and each gets bricks of its own.
+    windows = list(ACTUATOR.windows)
+    windows[1] = replace(windows[1], alpha=windows[1].alpha + np.radians(40.0))
+    actuator = replace(ACTUATOR, windows=tuple(windows))
+    assert make_mesh(actuator, like=known.mesh).X.shape != known.mesh.X.shape
+    flow = np.zeros_like(known.mesh.X)
+    near = solve_near(actuator, known, PRESSURE, flow=flow)
+    path = solve(actuator, [PRESSURE])
+    np.testing.assert_allclose(near.states[-1].theta, path.states[-1].theta, atol=2e-3)
 
 
 def test_no_state_there_is_said_so(known: Solution) -> None:
