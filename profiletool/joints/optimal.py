@@ -176,7 +176,8 @@ def _searches(
     profile: Profile, model: Model, cuts: FloatArray, limits: Limits, wish: Wish
 ) -> list[Found]:
     """Search on the profile, and farther off it where that does not do."""
-    most = wish.count or MOST_JOINTS
+    room = int(limits.max_length_mm / (cuts.min() + limits.wrap_mm)) + 1
+    most = min(wish.count or MOST_JOINTS, room)
     found: list[Found] = []
     for grid, enough in ((FINE, 2.0 * wish.tolerance_mm), (WIDE, _FAR_MM), (FAR, np.inf)):
         found.append(search(profile, model, cuts, limits, wish.interference_mm, grid, most))
