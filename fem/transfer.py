@@ -30,18 +30,12 @@ def transfer(old: Mesh, x: FloatArray, new: Mesh) -> FloatArray:
     -------
     (layers + 1, ring + mid, 3) mm
     """
-    found = carry(old, x, new)
-    _lengthen(old, new, found)
-    return settle(found, new)
-
-
-def carry(old: Mesh, values: FloatArray, new: Mesh) -> FloatArray:
-    """Interpolate nodal values (layers + 1, ring + mid, 3) within the tube's section alone."""
     found = np.zeros_like(new.X)
     mid = slice(new.ring, None)
-    found[:, : new.ring] = _around(old, values, new.X[0, : new.ring], -1.0)
-    found[:-1, mid] = _around(old, values, new.X[0, mid], 0.0)[:-1]
-    return found
+    found[:, : new.ring] = _around(old, x, new.X[0, : new.ring], -1.0)
+    found[:-1, mid] = _around(old, x, new.X[0, mid], 0.0)[:-1]
+    _lengthen(old, new, found)
+    return settle(found, new)
 
 
 def settle(x: FloatArray, new: Mesh, old: Mesh | None = None) -> FloatArray:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
 from formula.errors import OutOfRange
 from formula.theta import Formula, theta_deg
 from profiletool.errors import Infeasible, NoObject, UsageError
+from profiletool.joints.allowed import BAR_PER_MPA
 from profiletool.joints.assign import Layout, joint_rules, lay_out, theta_table
-from profiletool.joints.correct import CannotBend, ModelBench, Steps, correct
+from profiletool.joints.correct import Bench, CannotBend, ModelBench, Steps, correct
 from profiletool.joints.hinge import FormulaModel
 from profiletool.joints.kinematics import deform
 from profiletool.joints.limits import shortfalls
@@ -34,10 +36,11 @@ from profiletool.records import (
 from profiletool.refine import FeBench
 from profiletool.subject import Request
 
+S = TypeVar("S")
+
 PAPER_TOLERANCE_MM = 1.0
 GOOD_SHARE = 0.01  # of the profile's length: RMS of a shape that is called good
 _PRESSURE_STEP = 0.001  # MPa: what a gauge can be set to
-_BAR = 10.0  # in a MPa
 _SLACK_MM = 0.05  # that nobody can see
 _AGAIN = 0.97  # of the pressure that a tube stands, where it does not stand the one asked
 
@@ -143,10 +146,10 @@ def optimal_plan(
     UsageError, NoObject
     """
     model = _model(request, formula)
-    if request.material.max_pressure_bar < _BAR * model.pressure[0]:
+    if request.material.max_pressure_bar < BAR_PER_MPA * model.pressure[0]:
         raise UsageError(
             f"--max-pressure {request.material.max_pressure_bar:g} bar is less than the "
-            f"{_BAR * model.pressure[0]:g} bar from which on the joints are known by the "
+            f"{BAR_PER_MPA * model.pressure[0]:g} bar from which on the joints are known by the "
             f"{_by(model)}"
         )
     wish = Wish(
@@ -155,21 +158,32 @@ def optimal_plan(
         count=request.joints,
         base_free=request.base_free,
     )
+
+    def by_model(choice: Choice) -> Actuator:
+        return _corrected(request, ModelBench(model), profile, model, choice, lambda line: None)
+
+    def say_fe(line: str) -> None:
+        say(f"finite elements, {line}")
+
     material, notes = request.material, list[str]()
     for _ in range(2):
         choice = _chosen(profile, model, material, wish)
         say(
-            f"joints: {len(choice.chain.openF)} at {_BAR * choice.pressure:.2f} bar, "
+            f"joints: {len(choice.chain.openF)} at {BAR_PER_MPA * choice.pressure:.2f} bar, "
             f"{choice.misfit.rms_mm:.2f} mm RMS off the profile by the {_by(model)}"
         )
+        if not (request.verify and request.refine):
+            actuator = by_model(choice)
+            break
         try:
-            actuator = _corrected(request, material, profile, model, choice, say)
+            bench = FeBench(material)
+            actuator = _corrected(request, bench, profile, model, choice, say_fe)
             break
         except CannotBend as problem:
             notes.append(f"the first choice of joints did not stand by FE: {problem}")
             say(notes[-1])
-            actuator = _built(request, profile, model, choice)
-            material = replace(material, max_pressure_bar=_BAR * _AGAIN * problem.reached)
+            actuator = by_model(choice)
+            material = replace(material, max_pressure_bar=BAR_PER_MPA * _AGAIN * problem.reached)
             if problem.reached <= choice.limits.pressure[0]:
                 break
     bent = model.shape(actuator.chain, actuator.pressure, actuator.pose, profile.sign)
@@ -213,40 +227,27 @@ def _steps(request: Request) -> Steps:
     )
 
 
-def _built(request: Request, profile: Profile, model: Model, choice: Choice) -> Actuator:
-    """Round a choice by its model."""
-    parameters = parameters_of(choice.chain, profile, choice.limits)
-    vector = parameters.pack(Actuator(choice.chain, choice.pressure, choice.pose))
-    found = correct(
-        ModelBench(model), model, parameters, vector, profile, _steps(request),
-        request.interference_mm, lambda line: None,
-    )  # fmt: skip
-    return found.best.actuator
-
-
 def _corrected(
     request: Request,
-    material: Material,
+    bench: Bench[S],
     profile: Profile,
     model: Model,
     choice: Choice,
     say: Callable[[str], None],
 ) -> Actuator:
-    if not (request.verify and request.refine):
-        return _built(request, profile, model, choice)
+    """Correct a choice on a bench, in numbers that can be built."""
     parameters = parameters_of(choice.chain, profile, choice.limits)
     vector = parameters.pack(Actuator(choice.chain, choice.pressure, choice.pose))
     found = correct(
-        FeBench(material), model, parameters, vector, profile, _steps(request),
-        request.interference_mm, lambda line: say(f"finite elements, {line}"),
-    )  # fmt: skip
+        bench, model, parameters, vector, profile, _steps(request), request.interference_mm, say
+    )
     return found.best.actuator
 
 
 def _layout(
     actuator: Actuator, choice: Choice, bent: Shape, model: Model, formula: Formula
 ) -> Layout:
-    chain, pressure_bar = actuator.chain, _BAR * actuator.pressure
+    chain, pressure_bar = actuator.chain, BAR_PER_MPA * actuator.pressure
     alpha = np.degrees(chain.alpha)
     wanted = np.abs(np.degrees(angles(choice.shape, choice.chain)))
     response = np.abs(np.degrees(angles(bent, chain)))

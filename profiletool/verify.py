@@ -33,6 +33,8 @@ from profiletool.records import (
     Verification,
     side_sign,
 )
+from profiletool.records import Gauze as DesignGauze
+from profiletool.records import Tube as DesignTube
 
 STEPS = 10  # pressures that are reported where nothing else is asked for,
 CHECK_STEPS = 5  # and where a design is checked
@@ -101,13 +103,7 @@ def actuator_of(design: Design) -> Actuator:
         Window(j.centre_mm, j.openF_mm, np.radians(j.alpha_closed_deg), _center(j.alpha_center_deg))
         for j in design.joints
     )
-    return Actuator(
-        tube.length_mm,
-        windows,
-        diameter=tube.outer_diameter_mm,
-        wall=tube.wall_mm,
-        gauze=_gauze(gauze.thread_mm, gauze.turns, gauze.pitch_mm),
-    )
+    return _tube(tube.length_mm, windows, tube, gauze)
 
 
 def tube_of(chain: Chain, material: Material) -> Actuator:
@@ -124,17 +120,23 @@ def tube_of(chain: Chain, material: Material) -> Actuator:
             chain.centre, chain.openF, chain.alpha, chain.sense, strict=True
         )
     )
+    return _tube(chain.length, windows, material, material)
+
+
+def _tube(
+    length: float,
+    windows: tuple[Window, ...],
+    tube: DesignTube | Material,
+    gauze: DesignGauze | Material,
+) -> Actuator:
+    thread = THREAD_EA * (gauze.thread_mm / _PAPER_THREAD_MM) ** 2
     return Actuator(
-        chain.length,
+        length,
         windows,
-        diameter=material.outer_diameter_mm,
-        wall=material.wall_mm,
-        gauze=_gauze(material.thread_mm, material.turns, material.pitch_mm),
+        diameter=tube.outer_diameter_mm,
+        wall=tube.wall_mm,
+        gauze=Gauze(stiffness=thread * gauze.turns / gauze.pitch_mm),
     )
-
-
-def _gauze(thread_mm: float, turns: int, pitch_mm: float) -> Gauze:
-    return Gauze(stiffness=THREAD_EA * (thread_mm / _PAPER_THREAD_MM) ** 2 * turns / pitch_mm)
 
 
 def joint_actuator(
