@@ -68,11 +68,15 @@ class Inverse:
         """How many negative eigenvalues the tangent has: 0 where the state is stable."""
         return sum(pivot.negative for pivot in self._system.pivots())
 
-    def solve(self, rhs: FloatArray) -> FloatArray:
-        """Solve for right sides (k, count) or (count,)."""
+    def solve(self, rhs: FloatArray, *, positive: bool = False) -> FloatArray:
+        """Solve for right sides (k, count) or (count,).
+
+        ``positive``: in place of the tangent K = L S L^T, S = +-1, with L L^T, which is positive
+        definite: the solution leads downhill in the energy whatever K is.
+        """
         if self._version != self._system.version:
             raise RuntimeError("the tangent has been factored anew since")
-        return self._system.solve(np.atleast_2d(rhs)).reshape(rhs.shape)
+        return self._system.solve(np.atleast_2d(rhs), positive=positive).reshape(rhs.shape)
 
 
 class System:
@@ -220,8 +224,8 @@ class System:
         mids = values[:, u.rings : u.count - u.plug].reshape(k, u.layers, len(u.mid))
         return rings, mids, values[:, u.count - u.plug :]
 
-    def solve(self, rhs: FloatArray) -> FloatArray:
-        """Solve with the present factorisation for rhs (k, count)."""
+    def solve(self, rhs: FloatArray, *, positive: bool = False) -> FloatArray:
+        """Solve with the present factorisation for rhs (k, count); see `Inverse.solve`."""
         out = np.array(rhs)
         rings, mids, plug = self.split(out)
         carry: dict[Part, FloatArray] = {}
@@ -235,7 +239,11 @@ class System:
         if self.middle > 0:
             middle = rings[:, self.middle - 1] - sum(carry.values())
             self._last.forward(middle)
+            if positive and self._last.signs is not None:
+                middle *= self._last.signs
             self._last.backward(middle)
             rings[:, self.middle - 1] = middle
-        self._both(lambda part: part.backward(rings, mids, plug, middle), alone=few)
+        self._both(
+            lambda part: part.backward(rings, mids, plug, middle, positive=positive), alone=few
+        )
         return out

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from fem.assembly import Forces, System
 from fem.errors import Attempt, NotConverged
-from fem.newton import correct
+from fem.newton import Correction, correct, descend
 from fem.sections import Chart, Pose
 
 FloatArray = NDArray[np.float64]
@@ -25,6 +25,8 @@ FloatArray = NDArray[np.float64]
 _ORDER = 2  # of the extrapolation
 _SHRINK, _GROW = 0.3, 2.5
 _FLAT = 2e-3  # the states around a maximum lie within this share of its pressure
+_FREE = 1e-4  # of the stored energy: what a state may set free without having jumped
+_FAILED = 2  # steps shortened in vain, after which it tries the energy
 _LIMIT_STEPS = 60  # by volume, before it gives up looking for a maximum
 
 
@@ -131,7 +133,7 @@ class Path:
         """
         options = self._options
         mu = self._system.mesh.actuator.rubber.shear_modulus
-        step, pressure = options.first * mu, 0.0
+        step, pressure, failed = options.first * mu, 0.0, 0
         for target in pressures:
             while pressure < target:
                 count = max(1, int(np.ceil((target - pressure) / step - 1e-6)))
@@ -141,16 +143,26 @@ class Path:
                 if found is not None:
                     step = (trial - pressure) * _rate(options.aim / first)
                     self._careful = step < 5.0 * options.smallest * mu
-                    pressure = trial
+                    pressure, failed = trial, 0
                     yield found
                     continue
-                step = 0.4 * (trial - pressure)
-                if step < options.smallest * mu:
-                    yield from self._by_volume(trial, step)
+                failed += 1
+                shorter = 0.4 * (trial - pressure)
+                last = shorter < options.smallest * mu
+                if last or failed == _FAILED:
+                    found = self._settle(trial, asked)
+                if found is not None:
+                    step = max(trial - pressure, options.smallest * mu)
+                    pressure, failed = trial, 0
+                    yield found
+                elif last:
+                    step, failed = options.smallest * mu, 0
+                    yield from self._by_volume(trial, shorter)
                     if self.critical is not None:
                         return
                     pressure = self._known[-1].pressure
-                    step = options.smallest * mu
+                else:
+                    step = shorter
 
     def _try(
         self, pressure: float, volume: float | None, asked: bool
@@ -170,21 +182,51 @@ class Path:
             if negative and volume is None and self._options.stable:
                 outcome = "unstable"
                 self._unstable = True
-        self.history.append(
-            Attempt(done.pressure, done.iterations, done.factored, done.residual, outcome)
-        )
+        self._note(done, outcome)
         if outcome != "converged":
             self._careful = True  # what is extrapolated from must be right from now on
             return None, done.first
         if not self._known:
             x = done.pose.x
             self._flow = self._chart.increment(done.pose, self._system.expand(x, flow))
+        return self._keep(done, flow, negative, asked), done.first
+
+    def _settle(self, pressure: float, asked: bool) -> Equilibrium | None:
+        """Let the last state settle at a slightly higher pressure, downhill in the energy.
+
+        None where that leads nowhere, or to a state that no path leads to: on a path the energy
+        U - p V sinks by the integral of V over p. What it sinks by more is set free in a jump.
+        """
+        if not self._known:
+            return None
+        last = self._known[-1]
+        done = descend(self._system, self._chart, last.pose, pressure, self._options.tolerance)
+        outcome: str = done.outcome
+        if outcome == "converged":
+            sunk = _potential(last.forces, last.pressure) - _potential(done.forces, pressure)
+            free = sunk - done.forces.volume * (pressure - last.pressure)
+            if free > _FREE * last.forces.energy:
+                outcome = "unstable"
+                self._unstable = True
+        self._note(done, outcome)
+        if outcome != "converged":
+            return None
+        return self._keep(done, done.flow, 0, asked)
+
+    def _note(self, done: Correction, outcome: str) -> None:
+        self.history.append(
+            Attempt(done.pressure, done.iterations, done.factored, done.residual, outcome)
+        )
+
+    def _keep(
+        self, done: Correction, flow: FloatArray, negative: int, asked: bool
+    ) -> Equilibrium:
         compliance = float(done.forces.volume_gradient @ flow)
         found = Equilibrium(
             done.pressure, done.pose, done.forces, compliance, done.residual, asked, negative
         )
         self._known = [*self._known[-_ORDER:], found]
-        return found, done.first
+        return found
 
     def _predict(self, pressure: float, volume: float | None) -> tuple[Pose, float]:
         """Extrapolate the last states: a polynomial in the pressure, or in the volume."""
@@ -272,6 +314,10 @@ class Path:
         )
 
     _flow: FloatArray  # per MPa, at the first state
+
+
+def _potential(forces: Forces, pressure: float) -> float:
+    return forces.energy - pressure * forces.volume
 
 
 def lagrange(places: FloatArray, at: float) -> FloatArray:

@@ -172,12 +172,23 @@ class Part:
         return carry
 
     def backward(
-        self, rings: FloatArray, mids: FloatArray, plug: FloatArray, ahead: FloatArray
+        self,
+        rings: FloatArray,
+        mids: FloatArray,
+        plug: FloatArray,
+        ahead: FloatArray,
+        *,
+        positive: bool,
     ) -> None:
-        """Solve in place from the middle ring's values ``ahead`` (k, far) to the end."""
+        """Solve in place from the middle ring's values ``ahead`` (k, far) to the end.
+
+        ``positive``: with all eigenvalues of the pivots turned positive.
+        """
         for layer in self.order[::-1]:
             pivot = self.pivots[layer]
             rows = self._rows(layer, rings, mids, plug)
+            if positive and pivot.signs is not None:
+                rows *= pivot.signs
             known = ahead @ self.couplings[layer].T
             rows -= known if pivot.signs is None else known * pivot.signs
             pivot.backward(rows)
