@@ -23,8 +23,6 @@ from fem.plug import Plug
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-_FEW = 4  # right sides up to which a second thread only gets in the way
-
 
 @dataclass(frozen=True)
 class Forces:
@@ -233,8 +231,7 @@ class System:
         def forward(part: Part) -> None:
             carry[part] = part.forward(rings, mids, plug)
 
-        few = len(out) <= _FEW
-        self._both(forward, alone=few)
+        self._both(forward)
         middle = np.zeros((len(out), 0))
         if self.middle > 0:
             middle = rings[:, self.middle - 1] - sum(carry.values())
@@ -243,7 +240,5 @@ class System:
                 middle *= self._last.signs
             self._last.backward(middle)
             rings[:, self.middle - 1] = middle
-        self._both(
-            lambda part: part.backward(rings, mids, plug, middle, positive=positive), alone=few
-        )
+        self._both(lambda part: part.backward(rings, mids, plug, middle, positive=positive))
         return out

@@ -9,7 +9,7 @@ volume, under which a balloon is stable, and so finds out whether the pressure h
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -69,7 +69,7 @@ class Equilibrium:
     pose : Pose
     forces : Forces
     compliance : float
-        dV/dp, mm^3/MPa; negative past a limit point.
+        dV/dp, mm^3/MPa; negative past a limit point. At the first states and by volume, else NaN.
     residual : float
         Relative to the pressure's forces.
     asked : bool
@@ -173,12 +173,12 @@ class Path:
         pose, pressure = self._predict(pressure, volume)
         done = correct(self._system, self._chart, pose, pressure, tolerance, volume)
         outcome: str = done.outcome
-        negative, flow = done.negative, done.flow
+        negative = done.negative
         if outcome == "converged" and negative:
             # Counted on the way there: what counts is the state itself.
-            forces, inverse = self._system.factor(done.pose.x, done.pressure)
-            if inverse is not None:
-                negative, flow = inverse.negative, inverse.solve(forces.volume_gradient)
+            _, inverse = self._system.factor(done.pose.x, done.pressure)
+            done = replace(done, inverse=inverse)
+            negative = done.negative
             if negative and volume is None and self._options.stable:
                 outcome = "unstable"
                 self._unstable = True
@@ -186,10 +186,7 @@ class Path:
         if outcome != "converged":
             self._careful = True  # what is extrapolated from must be right from now on
             return None, done.first
-        if not self._known:
-            x = done.pose.x
-            self._flow = self._chart.increment(done.pose, self._system.expand(x, flow))
-        return self._keep(done, flow, negative, asked), done.first
+        return self._keep(done, asked, by_volume=volume is not None), done.first
 
     def _settle(self, pressure: float, asked: bool) -> Equilibrium | None:
         """Let the last state settle at a slightly higher pressure, downhill in the energy.
@@ -211,19 +208,23 @@ class Path:
         self._note(done, outcome)
         if outcome != "converged":
             return None
-        return self._keep(done, done.flow, 0, asked)
+        return self._keep(done, asked)
 
     def _note(self, done: Correction, outcome: str) -> None:
         self.history.append(
             Attempt(done.pressure, done.iterations, done.factored, done.residual, outcome)
         )
 
-    def _keep(
-        self, done: Correction, flow: FloatArray, negative: int, asked: bool
-    ) -> Equilibrium:
-        compliance = float(done.forces.volume_gradient @ flow)
+    def _keep(self, done: Correction, asked: bool, *, by_volume: bool = False) -> Equilibrium:
+        compliance = np.nan
+        if by_volume or len(self._known) < 2:
+            flow = done.flow
+            compliance = float(done.forces.volume_gradient @ flow)
+            if not self._known:
+                x = done.pose.x
+                self._flow = self._chart.increment(done.pose, self._system.expand(x, flow))
         found = Equilibrium(
-            done.pressure, done.pose, done.forces, compliance, done.residual, asked, negative
+            done.pressure, done.pose, done.forces, compliance, done.residual, asked, done.negative
         )
         self._known = [*self._known[-_ORDER:], found]
         return found
@@ -257,8 +258,9 @@ class Path:
         if len(self._known) < 2:
             raise self._failure(blocked)
         self._careful = True
-        last = self._known[-1]
-        grow = max(last.compliance * step, 1e-5 * last.forces.volume)
+        before, last = self._known[-2:]
+        softness = (last.forces.volume - before.forces.volume) / (last.pressure - before.pressure)
+        grow = max(softness * step, 1e-5 * last.forces.volume)
         least = 1e-3 * grow
         end = np.inf
         for _ in range(_LIMIT_STEPS):

@@ -39,12 +39,12 @@ class MeshSize:
     """
 
     around: int = 4
-    beside: float = float(np.radians(12.0))
+    beside: float = float(np.radians(18.0))
     edge: float = 0.2
     window: float = 2.5
     wrapped: float = 8.0
     end: float = 4.0
-    growth: float = 3.0
+    growth: float = 4.0
     kind: Kind = "hex20"
     through: int = 1
     orders: tuple[int, int, int] = (2, 3, 2)

@@ -35,10 +35,8 @@ class Correction:
     pose : Pose
     pressure : float, MPa
     forces : Forces
-    flow : (count,) mm/MPa
-        Change of the unknowns with the pressure, by the last factored tangent.
-    negative : int
-        Negative eigenvalues of that tangent.
+    inverse : Inverse or None
+        Of the last tangent that could be factored.
     first, residual : float
         Residual of the predicted and of the last state, relative to the pressure's forces.
     factored, iterations : int
@@ -49,12 +47,22 @@ class Correction:
     pose: Pose
     pressure: float
     forces: Forces
-    flow: FloatArray
-    negative: int
+    inverse: Inverse | None
     first: float
     residual: float
     factored: int
     iterations: int
+
+    @property
+    def negative(self) -> int:
+        """Negative eigenvalues of the last tangent."""
+        return 0 if self.inverse is None else self.inverse.negative
+
+    @property
+    def flow(self) -> FloatArray:
+        """Change of the unknowns with the pressure by the last tangent, (count,) mm/MPa."""
+        g = self.forces.volume_gradient
+        return np.zeros_like(g) if self.inverse is None else self.inverse.solve(g)
 
 
 def correct(
@@ -82,7 +90,6 @@ def correct(
     """
     outcome: Outcome = "residual"
     first = residual = np.inf
-    flow, negative = np.zeros(system.unknowns.count), 0
     factored = iterations = 0
     while factored < _MOST:
         forces, inverse = system.factor(pose.x, pressure)
@@ -90,14 +97,12 @@ def correct(
         if inverse is None:
             outcome = "inverted"
             break
-        negative = inverse.negative
         residual = relative_residual(forces, pressure, volume)
         first = residual if factored == 1 else first
         if residual <= tolerance:
-            flow = inverse.solve(forces.volume_gradient)
             outcome = "converged"
             break
-        moved, flow = _step(system, chart, pose, pressure, forces, inverse, volume)
+        moved = _step(system, chart, pose, pressure, forces, inverse, volume)
         if moved is None:
             outcome = "inverted"
             break
@@ -110,7 +115,7 @@ def correct(
         if not residual < _HOPELESS * max(first, 1.0):
             break
     return Correction(
-        outcome, pose, pressure, forces, flow, negative, first, residual, factored, iterations
+        outcome, pose, pressure, forces, inverse, first, residual, factored, iterations
     )
 
 
@@ -139,11 +144,8 @@ def descend(
         pose = moved
         iterations += 1
         forces, inverse = system.factor(pose.x, pressure)
-    flow, negative = np.zeros(system.unknowns.count), 0
-    if inverse is not None:
-        flow, negative = inverse.solve(forces.volume_gradient), inverse.negative
     return Correction(
-        outcome, pose, pressure, forces, flow, negative, first, residual, factored, iterations
+        outcome, pose, pressure, forces, inverse, first, residual, factored, iterations
     )
 
 
@@ -155,7 +157,7 @@ def _downhill(
     if inverse.negative:
         du = inverse.solve(rhs, positive=True)
     else:
-        du, _ = Switching(system, inverse, pose.x).solve(rhs, forces.volume_gradient)
+        du = Switching(system, inverse, pose.x).solve(rhs)
     increment = chart.increment(pose, system.expand(pose.x, du))
     slope = float(rhs @ du)
     energy = forces.energy - pressure * forces.volume
@@ -188,13 +190,13 @@ def _step(
     forces: Forces,
     inverse: Inverse,
     volume: float | None,
-) -> tuple[tuple[Pose, float, Forces] | None, FloatArray]:
-    """Take one step, shortened where a brick would turn inside out; give the flow too."""
-    threads = Switching(system, inverse, pose.x)
-    g = forces.volume_gradient
-    du, flow = threads.solve(-forces.residual(pressure), g)
+) -> tuple[Pose, float, Forces] | None:
+    """Take one step, shortened where a brick would turn inside out."""
+    du = Switching(system, inverse, pose.x).solve(-forces.residual(pressure))
     rise = 0.0
     if volume is not None:
+        g = forces.volume_gradient
+        flow = inverse.solve(g)
         rise = (volume - forces.volume - float(g @ du)) / float(g @ flow)
         du = du + rise * flow
     increment = chart.increment(pose, system.expand(pose.x, du))
@@ -203,6 +205,6 @@ def _step(
         moved = chart.move(pose, share * increment)
         new = system.forces(moved.x)
         if new.least_J > 0.0:
-            return (moved, pressure + share * rise, new), flow
+            return moved, pressure + share * rise, new
         share *= 0.4
-    return None, flow
+    return None

@@ -59,13 +59,10 @@ class Switching:
         moved: FloatArray = self._threads.gradient @ nodal.reshape(-1, 3)[self._faces]
         return moved
 
-    def solve(self, rhs: FloatArray, beside: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Step (count,) that balances rhs (count,) with the threads' own law.
-
-        ``beside`` (count,) is solved for too, with the threads as they are, as it costs little.
-        """
-        first, other = self._inverse.solve(np.stack([rhs, beside]))
-        return (first if self._inverse.negative else self._balanced(rhs, first)), other
+    def solve(self, rhs: FloatArray) -> FloatArray:
+        """Step (count,) that balances rhs (count,) with the threads' own law."""
+        first = self._inverse.solve(rhs)
+        return first if self._inverse.negative else self._balanced(rhs, first)
 
     def _balanced(self, rhs: FloatArray, first: FloatArray) -> FloatArray:
         du = first
