@@ -171,6 +171,14 @@ def remesh(mesh: Mesh, actuator: Actuator, *, gauze: bool = True) -> Mesh:
     return replace(changed, **_woven(actuator, mesh.size, z, mesh.segment, mesh.columns))
 
 
+def alike(a: Mesh, b: Mesh) -> bool:
+    """Whether every node of one mesh stands for the same place as in the other, or nearly."""
+    if a.X.shape != b.X.shape or a.columns.shape != b.columns.shape:
+        return False
+    narrowest = np.diff(a.columns).min()
+    return bool(np.abs(a.columns - b.columns).max() < 0.5 * narrowest)
+
+
 def _stretched(mesh: Mesh, actuator: Actuator) -> tuple[FloatArray, IntArray]:
     """Stations of a mesh, stretched for a changed actuator.
 

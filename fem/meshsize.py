@@ -44,7 +44,7 @@ class MeshSize:
     window: float = 2.5
     wrapped: float = 8.0
     end: float = 4.0
-    growth: float = 4.0
+    growth: float = 3.0
     kind: Kind = "hex20"
     through: int = 1
     orders: tuple[int, int, int] = (2, 3, 2)

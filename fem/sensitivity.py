@@ -18,7 +18,7 @@ from fem import blas, measure
 from fem.actuator import Actuator, Window
 from fem.assembly import Forces, System
 from fem.errors import FemError
-from fem.mesh import Mesh, make_mesh, remesh
+from fem.mesh import Mesh, alike, make_mesh, remesh
 from fem.transfer import settle
 
 FloatArray = NDArray[np.float64]
@@ -189,7 +189,7 @@ def _thicken(actuator: Actuator, amount: float) -> Actuator:
 def _changed(mesh: Mesh, actuator: Actuator) -> Mesh:
     """Mesh a changed actuator with as many nodes; its columns move with the sectors' edges."""
     changed = make_mesh(actuator, mesh.size, not mesh.half, like=mesh)
-    return changed if changed.X.shape == mesh.X.shape else remesh(mesh, actuator)
+    return changed if alike(changed, mesh) else remesh(mesh, actuator)
 
 
 def _pulls(

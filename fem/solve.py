@@ -14,7 +14,7 @@ from fem.actuator import Actuator
 from fem.assembly import System
 from fem.errors import Attempt, NotConverged
 from fem.loadpath import Critical, Equilibrium, Options, Path
-from fem.mesh import Mesh, make_mesh
+from fem.mesh import Mesh, alike, make_mesh
 from fem.meshsize import DEFAULT_MESH, MeshSize
 from fem.newton import correct
 from fem.sections import Chart
@@ -226,7 +226,7 @@ def solve_near(
             chart = Chart(mesh)
             system = System(mesh, threads)
             try:
-                if flow is None or mesh.X.shape != last.X.shape:
+                if flow is None or not alike(mesh, last):
                     start = transfer(last, x, mesh)
                 else:
                     start = settle(_moved(last, x, step * flow), mesh, last)
@@ -238,7 +238,7 @@ def solve_near(
             )
             if done.outcome == "converged" and not (done.negative and options.stable):
                 # What is expected of the nodes of one mesh says nothing of another's.
-                flow = flow if mesh.X.shape == last.X.shape else None
+                flow = flow if alike(mesh, last) else None
                 share, last, x = min(share + step, 1.0), mesh, done.pose.x
             elif step > _LEAST_WAY:
                 step *= 0.5
