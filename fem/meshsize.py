@@ -39,7 +39,7 @@ class MeshSize:
     """
 
     around: int = 4
-    beside: float = float(np.radians(18.0))
+    beside: float = float(np.radians(12.0))
     edge: float = 0.2
     window: float = 2.5
     wrapped: float = 8.0
