@@ -1,4 +1,4 @@
-"""The continuous inverse of formula (9): alpha from theta, openF and P."""
+"""The continuous inverse of a formula: alpha from theta, openF and P."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ def alpha_branch_deg(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the range of alpha on which theta falls with alpha.
 
-    In alpha the formula is a parabola that opens downward. Left of its vertex theta would grow
-    with the uncut sector, which the joint does not do, so the inverse starts at the vertex where
-    that lies inside the formula's range (about 90 deg at 1.9 bar).
+    In alpha a formula is a parabola. On one side of its vertex theta would grow with the uncut
+    sector, which a joint does not do, so where the vertex lies inside the formula's range the
+    inverse starts there, or ends there where the parabola opens upward. (Formula (9) opens
+    downward, with its vertex at about 90 deg at 1.9 bar.)
 
     Returns
     -------
@@ -25,15 +26,18 @@ def alpha_branch_deg(
     Raises
     ------
     OutOfRange
-        When the formula's parabola opens upward.
+        When the formula rises with alpha all over its range.
     """
     a, b, _ = quadratic_in_alpha(formula, openF_mm, pressure_bar)
-    if np.any((a >= 0.0) & (np.asarray(pressure_bar) > 0.0)):
-        raise OutOfRange(f'formula "{formula.name}" does not fall with alpha; it has no inverse')
     low, high = formula.alpha_range_deg
     with np.errstate(divide="ignore", invalid="ignore"):
-        vertex = np.where(a < 0.0, -b / (2.0 * a), low)
-    return np.clip(vertex, low, high), np.full(np.shape(a), high)
+        vertex = np.clip(-b / (2.0 * a), low, high)
+    first = np.where(a < 0.0, vertex, low)
+    last = np.where(a > 0.0, vertex, high)
+    slope = a * (first + last) + b  # half-way
+    if np.any(~((first < last) & (slope < 0.0)) & (np.asarray(pressure_bar) > 0.0)):
+        raise OutOfRange(f'formula "{formula.name}" does not fall with alpha; it has no inverse')
+    return first, last
 
 
 def theta_range_deg(
@@ -65,13 +69,25 @@ def alpha_deg(
     check_range(formula, "pressure", "bar", P, formula.pressure_range_bar)
     least, most = theta_range_deg(formula, openF, P)
     _check_theta(theta, least, most, openF, P)
-    a, b, c = quadratic_in_alpha(formula, openF, P)
-    root = np.sqrt(np.maximum(b * b - 4.0 * a * (c - theta), 0.0))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        alpha = (-b - root) / (2.0 * a)
+    alpha = falling_root(*quadratic_in_alpha(formula, openF, P), theta)
     low, high = alpha_branch_deg(formula, openF, P)
     # At no pressure every alpha gives theta = 0; the widest sector is the strongest one.
     return np.clip(np.where(P > 0.0, alpha, high), low, high)
+
+
+def falling_root(
+    a: NDArray[np.float64],
+    b: NDArray[np.float64],
+    c: NDArray[np.float64],
+    theta: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Alpha where a alpha² + b alpha + c falls through theta; at the vertex where it does not."""
+    root = np.sqrt(np.maximum(b * b - 4.0 * a * (c - theta), 0.0))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # The textbook form loses all digits where the parabola is nearly a line.
+        straight = 2.0 * (c - theta) / (root - b)
+        alpha: NDArray[np.float64] = np.where(b < 0.0, straight, (-b - root) / (2.0 * a))
+    return alpha
 
 
 def _check_theta(

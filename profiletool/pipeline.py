@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from formula.errors import BadFormula
-from formula.theta import Formula, load_formula
+from formula.files import load_formula
+from formula.theta import Formula
 from profiletool.errors import UnreadableInput
 from profiletool.joints.assign import Layout
 from profiletool.joints.kinematics import deform, misfit

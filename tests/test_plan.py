@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from formula.theta import load_formula, theta_deg
+from formula.files import load_formula
+from formula.theta import theta_deg
 from profiletool import plan as plan_module
 from profiletool.designfile import load_design
 from profiletool.errors import UsageError

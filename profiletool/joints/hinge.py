@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from formula.inverse import alpha_branch_deg
+from formula.inverse import alpha_branch_deg, falling_root
 from formula.theta import Formula, quadratic_in_alpha, theta_deg
 from profiletool.joints.kinematics import Bend, deform, facing_stretch
 from profiletool.joints.model import Chain
@@ -50,16 +50,11 @@ class FormulaModel:
     def alpha_for(self, openF: ArrayLike, theta: ArrayLike, pressure: ArrayLike) -> FloatArray:
         """alpha_closed that gives an angle, rad; NaN where none within the range does."""
         bar = BAR_PER_MPA * np.asarray(pressure, dtype=float)
-        wanted = np.degrees(theta)
+        wanted: FloatArray = np.degrees(np.asarray(theta, dtype=float))
         low, high = alpha_branch_deg(self._formula, openF, bar)
-        a, b, c = quadratic_in_alpha(self._formula, openF, bar)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            root = np.sqrt(b * b - 4.0 * a * (c - wanted))
-            alpha: FloatArray = (-b - root) / (2.0 * a)
-            # A parabola that touches its vertex from above by rounding has no root.
-            most = theta_deg(self._formula, low, openF, bar)
-            alpha = np.where(np.abs(wanted - most) <= _SLACK_DEG, low, alpha)
-            within = (alpha >= low - _SLACK_DEG) & (alpha <= high + _SLACK_DEG)
+        alpha = falling_root(*quadratic_in_alpha(self._formula, openF, bar), wanted)
+        least, most = (theta_deg(self._formula, end, openF, bar) for end in (high, low))
+        within = (wanted >= least - _SLACK_DEG) & (wanted <= most + _SLACK_DEG)
         return np.where(within, np.radians(np.clip(alpha, low, high)), np.nan)
 
     def line(self, openF: float, alpha: float, pressure: float, sense: float) -> FloatArray:

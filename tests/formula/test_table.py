@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from formula.errors import OutOfRange
+from formula.files import load_formula
 from formula.table import Table, assign, make_table
-from formula.theta import load_formula
 
 PAPER = load_formula()
 WIDE = make_table(PAPER, openF_mm=(6, 8, 10, 12, 14))

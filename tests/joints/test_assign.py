@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from formula.table import assign
-from formula.theta import load_formula
+from formula.files import load_formula
 from profiletool.joints.assign import (
     END_WRAP_MM,
     WRAP_MM,

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from formula.theta import load_formula
+from formula.files import load_formula
 from profiletool.joints.correct import (
     Bench,
     CannotBend,

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from formula.theta import load_formula, theta_deg
+from formula.files import load_formula
+from formula.theta import theta_deg
 from profiletool.joints.hinge import FormulaModel
 from profiletool.joints.kinematics import PIVOT_SHARE
 from profiletool.joints.model import Chain, Model

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from formula.theta import load_formula
+from formula.files import load_formula
 from profiletool.joints.assign import Layout, joint_rules, theta_table
 from profiletool.joints.kinematics import Bend, deform
 from profiletool.joints.limits import (

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from formula.theta import load_formula
+from formula.files import load_formula
 from profiletool.errors import NoObject
 from profiletool.joints.allowed import cuts_of, limits_of
 from profiletool.joints.bends import tabulate

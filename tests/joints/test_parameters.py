@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from formula.theta import load_formula
+from formula.files import load_formula
 from profiletool.joints.hinge import FormulaModel
 from profiletool.joints.parameters import (
     Limits,

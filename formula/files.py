@@ -1,0 +1,160 @@
+"""Formula files: JSON, every field checked when it is read.
+
+Schema ``profiletool.formula/1`` holds the eight coefficients of formula (9); ``/2`` the terms of
+any polynomial of `formula.theta.Formula`, and with them the campaign that they were fitted to.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from formula.errors import BadFormula
+from formula.theta import COEFFICIENTS, Formula, Rubber, Terms, paper_terms
+
+SCHEMA, POLYNOMIAL = "profiletool.formula/1", "profiletool.formula/2"
+_ABSURD = 1e9
+_MOST_POWERS = 8
+
+
+def shipped() -> dict[str, bytes]:
+    """Files of the formulas that come along, by name."""
+    folder = resources.files("formula") / "coefficients"
+    return {
+        file.name.removesuffix(".json"): file.read_bytes()
+        for file in sorted(folder.iterdir(), key=lambda file: file.name)
+        if file.name.endswith(".json")
+    }
+
+
+def load_formula(path: Path | None = None) -> Formula:
+    """Read a formula file, or a formula that comes along by its name; by default the paper's.
+
+    Raises
+    ------
+    BadFormula
+        When the file cannot be read or is no formula file of this schema.
+    """
+    name = "paper" if path is None else str(path)
+    return parse_formula(read_bytes(name), name)
+
+
+def read_bytes(name: str) -> bytes:
+    """Bytes of a formula file, or of the formula of that name that comes along.
+
+    Raises
+    ------
+    BadFormula
+    """
+    path = Path(name)
+    ours = shipped()
+    if name in ours and not path.is_file():
+        return ours[name]
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        known = ", ".join(ours)
+        raise BadFormula(
+            f"cannot read {path}: {error.strerror}; by name there are {known}"
+        ) from error
+
+
+def read_tree(data: bytes, file: str) -> dict[str, Any]:
+    """Decode a formula file and check its schema.
+
+    Raises
+    ------
+    BadFormula
+    """
+    try:
+        tree = json.loads(data)
+    except (ValueError, RecursionError) as error:
+        raise BadFormula(f"{file} is not JSON: {error}") from error
+    if not isinstance(tree, dict) or tree.get("schema") not in (SCHEMA, POLYNOMIAL):
+        raise BadFormula(f'{file} is no formula file: its "schema" is not "{SCHEMA}" or /2')
+    return tree
+
+
+def parse_formula(data: bytes, file: str) -> Formula:
+    """Build a Formula from the bytes of a formula file, checking every field.
+
+    Raises
+    ------
+    BadFormula
+        Naming the file and the first field that is missing or makes no sense.
+    """
+    tree = read_tree(data, file)
+    domain = _mapping(tree, "domain", file)
+    if tree["schema"] == SCHEMA:
+        coefficients = _mapping(tree, "coefficients", file)
+        terms = paper_terms([_number(coefficients, key, file) for key in COEFFICIENTS])
+    else:
+        terms = _terms(tree.get("terms"), file)
+    return Formula(
+        name=str(tree.get("name", file)),
+        source=str(tree.get("source", "")),
+        sha256=hashlib.sha256(data).hexdigest(),
+        terms=terms,
+        outer_diameter_mm=_number(domain, "outer_diameter_mm", file),
+        wall_mm=_number(domain, "wall_mm", file),
+        alpha_range_deg=_interval(domain, "alpha_closed_deg", file),
+        openF_range_mm=_interval(domain, "openF_mm", file),
+        pressure_range_bar=_interval(domain, "pressure_bar", file),
+        rubber=_rubber(domain, file) if "rubber" in domain else None,
+    )
+
+
+def _rubber(domain: dict[str, Any], file: str) -> Rubber:
+    tree = _mapping(domain, "rubber", file)
+    return Rubber(
+        str(tree.get("name", "")),
+        _number(tree, "C10_MPa", file),
+        _number(tree, "C01_MPa", file),
+        _number(tree, "K_MPa", file),
+    )
+
+
+def _terms(value: object, file: str) -> Terms:
+    def rows(part: object, least: int, most: int) -> list[Any]:
+        if not isinstance(part, list) or not least <= len(part) <= most:
+            raise BadFormula(f'{file}: "terms" are not lists by openF, pressure and alpha')
+        return part
+
+    blocks = [rows(block, 1, _MOST_POWERS) for block in rows(value, 1, _MOST_POWERS)]
+    if len({len(block) for block in blocks}) != 1:
+        raise BadFormula(f'{file}: "terms" have not the same powers of the pressure throughout')
+    found = []
+    for block in blocks:
+        lines = []
+        for row in block:
+            c, b, a = (_number({"terms": v}, "terms", file) for v in rows(row, 3, 3))
+            lines.append((c, b, a))
+        found.append(tuple(lines))
+    return tuple(found)
+
+
+def _mapping(tree: dict[str, Any], key: str, file: str) -> dict[str, Any]:
+    value = tree.get(key)
+    if not isinstance(value, dict):
+        raise BadFormula(f'{file} lacks "{key}"')
+    return value
+
+
+def _number(tree: dict[str, Any], key: str, file: str) -> float:
+    value = tree.get(key)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < _ABSURD:
+        raise BadFormula(f'{file}: "{key}" is not a number')
+    return float(value)
+
+
+def _interval(tree: dict[str, Any], key: str, file: str) -> tuple[float, float]:
+    value = tree.get(key)
+    if not isinstance(value, list) or len(value) != 2:
+        raise BadFormula(f'{file}: "{key}" is not a pair of numbers')
+    low, high = (_number({key: item}, key, file) for item in value)
+    if low >= high:
+        raise BadFormula(f'{file}: "{key}" is empty')
+    return low, high
