@@ -12,6 +12,9 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from formula.data import Data, FloatArray
 from formula.errors import BadFormula
 from formula.theta import COEFFICIENTS, Formula, Rubber, Terms, paper_terms
 
@@ -107,14 +110,55 @@ def parse_formula(data: bytes, file: str) -> Formula:
     )
 
 
+def campaign_of(data: bytes, file: str) -> Data | None:
+    """Read the campaign that a formula file holds; None where it holds none.
+
+    Raises
+    ------
+    BadFormula
+        When the file, or its campaign, makes no sense.
+    """
+    tree = read_tree(data, file)
+    if "campaign" not in tree:
+        return None
+    campaign = _mapping(tree, "campaign", file)
+    alpha, openF, P = (
+        _ascending(campaign, key, file) for key in ("alpha_closed_deg", "openF_mm", "pressure_bar")
+    )
+    rows = campaign.get("theta_deg")
+    try:
+        theta = np.array(rows, dtype=float)  # null becomes NaN
+    except (TypeError, ValueError) as error:
+        raise BadFormula(f'{file}: "theta_deg" is not a table of numbers') from error
+    if (
+        theta.shape != (len(alpha), len(openF), len(P))
+        or np.abs(theta[np.isfinite(theta)]).max(initial=0.0) > _ABSURD
+    ):
+        raise BadFormula(f'{file}: "theta_deg" does not fit its axes')
+    return Data(alpha, openF, P, theta)
+
+
+def _ascending(tree: dict[str, Any], key: str, file: str) -> FloatArray:
+    value = tree.get(key)
+    if not isinstance(value, list) or not value:
+        raise BadFormula(f'{file}: "{key}" is not a list of numbers')
+    axis = np.array([_number({key: item}, key, file) for item in value])
+    if np.any(np.diff(axis) <= 0.0):
+        raise BadFormula(f'{file}: "{key}" does not rise')
+    return axis
+
+
 def _rubber(domain: dict[str, Any], file: str) -> Rubber:
     tree = _mapping(domain, "rubber", file)
-    return Rubber(
+    rubber = Rubber(
         str(tree.get("name", "")),
         _number(tree, "C10_MPa", file),
         _number(tree, "C01_MPa", file),
         _number(tree, "K_MPa", file),
     )
+    if not rubber.sane:
+        raise BadFormula(f"{file}: no rubber can have such constants")
+    return rubber
 
 
 def _terms(value: object, file: str) -> Terms:

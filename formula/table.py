@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from formula.errors import OutOfRange
-from formula.theta import Formula, check_range, theta_deg
+from formula.theta import Formula, beyond, check_range, theta_deg
 
 # Rows and columns of Table 4.
 PRESSURES_BAR = (0.2, 0.4, 0.6, 0.8, 1.0, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2.0)
@@ -28,21 +28,28 @@ class Table:
     pressures_bar, openF_mm, alpha_deg : tuple of float
         Ascending.
     theta_deg : (pressures, openF, alpha) array
+    beyond : (pressures, openF, alpha) array of bool
+        Where the formula is extrapolated.
     """
 
     pressures_bar: tuple[float, ...]
     openF_mm: tuple[float, ...]
     alpha_deg: tuple[float, ...]
     theta_deg: NDArray[np.float64]
+    beyond: NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
 class Assignment:
-    """What the look-up gives: one pressure, and for each joint an alpha and the cell's angle."""
+    """What the look-up gives: one pressure, and for each joint an alpha and the cell's angle.
+
+    ``beyond`` says of each joint whether its cell is extrapolated.
+    """
 
     pressure_bar: float
     alpha_closed_deg: tuple[float, ...]
     theta_deg: tuple[float, ...]
+    beyond: tuple[bool, ...]
 
 
 def make_table(
@@ -70,8 +77,14 @@ def make_table(
     check_range(formula, "pressure", "bar", pressures_bar, formula.pressure_range_bar)
     check_range(formula, "alpha", "deg", alpha_deg, formula.alpha_range_deg)
     P, openF, alpha = (np.unique(np.asarray(v)) for v in (pressures_bar, openF_mm, alpha_deg))
-    theta = theta_deg(formula, alpha, openF[:, None], P[:, None, None])
-    return Table(tuple(P.tolist()), tuple(openF.tolist()), tuple(alpha.tolist()), theta)
+    at = (alpha, openF[:, None], P[:, None, None])
+    return Table(
+        tuple(P.tolist()),
+        tuple(openF.tolist()),
+        tuple(alpha.tolist()),
+        theta_deg(formula, *at),
+        beyond(formula, *at),
+    )
 
 
 def assign(
@@ -119,6 +132,7 @@ def assign(
                 pressure_bar=table.pressures_bar[row],
                 alpha_closed_deg=tuple(table.alpha_deg[cell] for _, cell in chosen),
                 theta_deg=tuple(float(table.theta_deg[row, block, cell]) for block, cell in chosen),
+                beyond=tuple(bool(table.beyond[row, block, cell]) for block, cell in chosen),
             )
     raise OutOfRange("no single pressure of the table reaches the angles of all joints")
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,6 +23,16 @@ class Rubber:
     C01_MPa: float
     K_MPa: float
 
+    @property
+    def sane(self) -> bool:
+        """Whether a rubber can have such constants."""
+        stiffness = self.C10_MPa + self.C01_MPa
+        return (
+            min(self.C10_MPa, self.C01_MPa) >= 0.0
+            and 1e-4 <= stiffness <= 1e3
+            and stiffness <= self.K_MPa <= 1e6
+        )
+
 
 @dataclass(frozen=True)
 class Formula:
@@ -38,10 +48,11 @@ class Formula:
     outer_diameter_mm, wall_mm : float
         The tube that it was fitted on.
     alpha_range_deg, openF_range_mm, pressure_range_bar : tuple of 2 float
+        What may be asked of it.
     rubber : Rubber or None
         Where the file does not say, the paper's.
-    extrapolate : bool
-        Whether values outside the range are let pass.
+    fitted : tuple of 3 ranges, or None
+        Of alpha, openF and pressure: what it was fitted on, where more than that may be asked.
     """
 
     name: str
@@ -54,7 +65,7 @@ class Formula:
     openF_range_mm: tuple[float, float]
     pressure_range_bar: tuple[float, float]
     rubber: Rubber | None = None
-    extrapolate: bool = False
+    fitted: tuple[tuple[float, float], ...] | None = None
 
 
 def paper_terms(coefficients: Sequence[float]) -> Terms:
@@ -98,10 +109,42 @@ def theta_deg(
     return theta
 
 
+def widened(formula: Formula) -> Formula:
+    """Let a formula be extrapolated: by half the cut and the pressure, by a fifth of alpha."""
+    fitted = (formula.alpha_range_deg, formula.openF_range_mm, formula.pressure_range_bar)
+    (a0, a1), (o0, o1), (p0, p1) = fitted
+    return replace(
+        formula,
+        alpha_range_deg=(0.8 * a0, max(a1, min(1.2 * a1, 180.0))),
+        openF_range_mm=(0.5 * o0, 1.5 * o1),
+        pressure_range_bar=(0.5 * p0, 1.5 * p1),
+        fitted=fitted,
+    )
+
+
+def beyond(
+    formula: Formula, alpha_deg: ArrayLike, openF_mm: ArrayLike, pressure_bar: ArrayLike
+) -> NDArray[np.bool_]:
+    """Whether a formula is extrapolated at these values; arguments broadcast."""
+    ranges = formula.fitted or (
+        formula.alpha_range_deg,
+        formula.openF_range_mm,
+        formula.pressure_range_bar,
+    )
+    outside = [
+        (values < low - 1e-9) | (values > high + 1e-9)
+        for values, (low, high) in zip(
+            np.broadcast_arrays(alpha_deg, openF_mm, pressure_bar), ranges, strict=True
+        )
+    ]
+    found: NDArray[np.bool_] = np.any(outside, axis=0)
+    return found
+
+
 def check_range(
     formula: Formula, what: str, unit: str, values: ArrayLike, limits: tuple[float, float]
 ) -> None:
-    """Refuse values outside the limits of a formula, unless it may be extrapolated.
+    """Refuse values outside the limits of a formula.
 
     Raises
     ------
@@ -111,7 +154,7 @@ def check_range(
     array = np.asarray(values, dtype=float)
     low, high = limits
     outside = array[~((array >= low) & (array <= high))]
-    if outside.size and not formula.extrapolate:
+    if outside.size:
         raise OutOfRange(
             f"{what} {outside[0]:g} {unit} is outside the {low:g} to {high:g} {unit} "
             f'that formula "{formula.name}" holds for'

@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import cycle, islice
 from typing import Any
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 
 from profiletool.records import FeState, FloatArray, Verification
-from profiletool.report.palette import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, RED, SKY
+from profiletool.report.figure import panels, png, styles
+from profiletool.report.palette import GREY, RED
 
-_COLOURS = (BLUE, RED, GREEN, ORANGE, PURPLE, SKY, INK)
-_MARKERS = ("o", "s", "^", "D", "v", "P", "X")
-_DPI = 120
 _SHOWN = 5  # outlines of the tube between rest and the highest pressure, both among them
 
 
@@ -32,18 +26,18 @@ class Mark:
 
 def draw_theta(found: Verification, title: str, marks: Sequence[Mark] = ()) -> bytes:
     """Draw the angle of every joint against pressure, as PNG."""
-    figure, axes = _axes(7.6, 5.0)
+    figure, (axes,) = panels(1, 7.6, 5.0)
     pressures = [0.0, *found.pressures_bar]
     rows = found.theta_deg
     axes.axhline(0.0, color=GREY, lw=0.8, zorder=1)
-    for k, (theta, (colour, marker)) in enumerate(zip(rows, _styles(len(rows)), strict=True)):
+    for k, (theta, (colour, marker)) in enumerate(zip(rows, styles(len(rows)), strict=True)):
         axes.plot(
             pressures, [0.0, *theta], color=colour, marker=marker, ms=4.5, lw=1.6, zorder=3,
             label=f"joint {k + 1}",
         )  # fmt: skip
     for mark in marks:
         for k, (theta_deg, (colour, marker)) in enumerate(
-            zip(mark.theta_deg, _styles(len(rows)), strict=True)
+            zip(mark.theta_deg, styles(len(rows)), strict=True)
         ):
             axes.plot(
                 [mark.pressure_bar], [theta_deg], color=colour, marker=marker, ms=9, mfc="none",
@@ -59,16 +53,16 @@ def draw_theta(found: Verification, title: str, marks: Sequence[Mark] = ()) -> b
     axes.set_ylabel("joint angle θ (deg), positive toward the object")
     axes.set_title(title, fontsize=11, loc="left")
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=9.5)
-    return _png(figure)
+    return png(figure)
 
 
 def draw_trajectories(found: Verification, title: str) -> bytes:
     """Draw the ways of the phalanges' midpoints as the pressure rises, as PNG (paper, Fig. 4)."""
     states = [found.rest, *found.states]
-    figure, axes = _axes(7.6, 6.4)
+    figure, (axes,) = panels(1, 7.6, 6.4)
     _draw_outlines(axes, states)
     ways = np.array([state.phalanges for state in states])
-    for k, (colour, marker) in enumerate(_styles(ways.shape[1] - 1), start=1):
+    for k, (colour, marker) in enumerate(styles(ways.shape[1] - 1), start=1):
         axes.plot(
             *ways[:, k].T, color=colour, marker=marker, ms=4, lw=1.6, zorder=4,
             label=f"phalanx {k}",
@@ -80,7 +74,7 @@ def draw_trajectories(found: Verification, title: str) -> bytes:
     steps = "" if len(states) < 3 else f", a mark every {np.diff(found.pressures_bar)[0]:.2g} bar"
     axes.set_title(f"{title}{steps}", fontsize=11, loc="left")
     axes.legend(loc="lower left", frameon=False, fontsize=9.5)
-    return _png(figure)
+    return png(figure)
 
 
 def _draw_outlines(axes: Any, states: Sequence[FeState]) -> None:
@@ -102,23 +96,3 @@ def _beyond(axis: FloatArray) -> tuple[float, float]:
     along = axis[-1] - axis[-5]
     x, y = 26.0 * along / np.hypot(*along)
     return float(x), float(y)
-
-
-def _styles(count: int) -> list[tuple[str, str]]:
-    return list(islice(cycle(zip(_COLOURS, _MARKERS, strict=True)), count))
-
-
-def _axes(wide: float, tall: float) -> tuple[Figure, Any]:
-    figure = Figure(figsize=(wide, tall), dpi=_DPI, facecolor="white", layout="constrained")
-    FigureCanvasAgg(figure)
-    axes: Any = figure.add_subplot()
-    axes.grid(color="#dddddd", lw=0.6, zorder=0)
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.set_axisbelow(True)
-    return figure, axes
-
-
-def _png(figure: Figure) -> bytes:
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", metadata={"Software": None})
-    return buffer.getvalue()

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import io
-
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 
 from profiletool.joints.optimal import TradeOff
 from profiletool.records import Design
+from profiletool.report.figure import panels, png
 from profiletool.report.palette import BLUE, GREEN, GREY, INK, PURPLE, RED, SKY
 
 _BAR = 10.0  # in a MPa
-_DPI = 120
 _COLOURS = (BLUE, RED, GREEN, PURPLE, SKY, GREY)
 _SHOWN = 6  # numbers of joints drawn against pressure
 
@@ -33,9 +29,7 @@ def trade_off_csv(found: TradeOff) -> bytes:
 
 def draw_trade_off(found: TradeOff, design: Design) -> bytes:
     """Draw the error against the number of joints, and against pressure, as PNG."""
-    figure = Figure(figsize=(10.0, 4.4), dpi=_DPI, facecolor="white", layout="constrained")
-    FigureCanvasAgg(figure)
-    left, right = figure.subplots(1, 2)
+    figure, (left, right) = panels(2, 10.0, 4.4)
     numbers = np.arange(1, found.rms_mm.shape[1] + 1)
     best = found.rms_mm.min(axis=0)
     known = np.isfinite(best)
@@ -69,6 +63,4 @@ def draw_trade_off(found: TradeOff, design: Design) -> bytes:
         axes.tick_params(axis="y", which="minor", labelsize=7)
         axes.grid(visible=True, which="both", alpha=0.25)
         axes.legend(fontsize=8, frameon=False)
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", metadata={"Software": None})
-    return buffer.getvalue()
+    return png(figure)

@@ -42,7 +42,14 @@ def test_table_5_by_the_look_up(shared: Path) -> None:
 
 def small(theta: list[list[list[float]]]) -> Table:
     array = np.array(theta)
-    return Table((1.0, 2.0), (6.0, 8.0)[: array.shape[1]], (90.0, 120.0), array)
+    inside = np.zeros_like(array, dtype=bool)
+    return Table(
+        (1.0, 2.0),
+        (6.0, 8.0)[: array.shape[1]],
+        (90.0, 120.0),
+        array,
+        np.zeros_like(array, dtype=bool),
+    )
 
 
 def test_least_excess_over_all_rows() -> None:
@@ -58,7 +65,7 @@ def test_equal_excess_takes_the_lower_pressure() -> None:
 def test_a_row_that_leaves_another_joint_short_is_passed_over() -> None:
     table = small([[[10.0, 5.0], [30.0, 20.0]], [[25.0, 9.0], [60.0, 31.0]]])
     result = assign(table, [8, 6], [30.0, 20.0])
-    assert result == type(result)(2.0, (120.0, 90.0), (31.0, 25.0))
+    assert result == type(result)(2.0, (120.0, 90.0), (31.0, 25.0), (False, False))
 
 
 def test_out_of_reach_names_the_joint_and_the_limit() -> None:

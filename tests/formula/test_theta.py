@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from formula.errors import BadFormula
-from formula.files import load_formula, parse_formula
-from formula.theta import paper_terms, theta_deg
+from formula.files import campaign_of, load_formula, parse_formula, shipped
+from formula.theta import beyond, paper_terms, theta_deg, widened
 
 PAPER = load_formula()
 FILE = json.loads(
@@ -90,3 +90,82 @@ def test_numbers_beyond_reason_are_refused() -> None:
     same = {**FILE, "domain": {**FILE["domain"], "openF_mm": [8, 8]}}
     with pytest.raises(BadFormula, match="empty"):
         parse_formula(json.dumps(same).encode(), "x.json")
+
+
+def test_files_of_any_polynomial() -> None:
+    tree = {
+        "schema": "profiletool.formula/2",
+        "name": "mine",
+        "terms": [[[1.0, 2.0, 3.0], [0.0, 0.5, 0.0]], [[0.0, 0.0, 1.0], [2.0, 0.0, 0.0]]],
+        "domain": {
+            **FILE["domain"],
+            "rubber": {"name": "x", "C10_MPa": 0.1, "C01_MPa": 0.05, "K_MPa": 3.0},
+        },
+    }
+    formula = parse_formula(json.dumps(tree).encode(), "x.json")
+    a, o, P = 1.5, 3.0, 0.5
+    by_hand = (1 + 2 * a + 3 * a * a) * P + 0.5 * a * P**2 + o * (a * a * P + 2 * P**2)
+    assert theta_deg(formula, a, o, P) == pytest.approx(by_hand, rel=1e-14)
+    assert formula.rubber is not None
+    assert formula.rubber.K_MPa == 3.0
+
+
+@pytest.mark.parametrize(
+    "terms",
+    [None, [], [[]], [[[1.0, 2.0]]], [[[1.0, 2.0, "x"]]], [[[1, 2, 3]], [[1, 2, 3], [1, 2, 3]]]],
+)
+def test_terms_that_make_no_sense(terms: object) -> None:
+    tree = {"schema": "profiletool.formula/2", "terms": terms, "domain": FILE["domain"]}
+    with pytest.raises(BadFormula, match="terms"):
+        parse_formula(json.dumps(tree).encode(), "x.json")
+
+
+def test_rubber_that_makes_no_sense() -> None:
+    rubber = {"name": "x", "C10_MPa": -0.1, "C01_MPa": 0.05, "K_MPa": 3.0}
+    with pytest.raises(BadFormula, match="rubber"):
+        parse_formula(
+            json.dumps({**FILE, "domain": {**FILE["domain"], "rubber": rubber}}).encode(), "x.json"
+        )
+
+
+def test_formulas_that_come_along_go_by_their_names(tmp_path: Path) -> None:
+    assert load_formula(Path("paper")) == PAPER
+    assert "paper" in shipped()
+    with pytest.raises(BadFormula, match=r"by name there are .*paper"):
+        load_formula(Path("unknown"))
+
+
+def test_a_campaign_reads_back() -> None:
+    campaign = {
+        "alpha_closed_deg": [84, 120],
+        "openF_mm": [8],
+        "pressure_bar": [1.0, 2.0],
+        "theta_deg": [[[10.0, 20.0]], [[5.0, None]]],
+    }
+    found = campaign_of(json.dumps({**FILE, "campaign": campaign}).encode(), "x.json")
+    assert found is not None
+    assert found.theta_deg[0, 0, 1] == 20.0
+    assert np.isnan(found.theta_deg[1, 0, 1])
+    assert campaign_of(json.dumps(FILE).encode(), "x.json") is None
+    for change in (
+        {"theta_deg": [[[1.0]]]},
+        {"theta_deg": "x"},
+        {"pressure_bar": [2.0, 1.0]},
+        {"openF_mm": []},
+        {"theta_deg": [[[10.0, 1e30]], [[5.0, 1.0]]]},
+    ):
+        broken = json.dumps({**FILE, "campaign": {**campaign, **change}}).encode()
+        with pytest.raises(BadFormula):
+            campaign_of(broken, "x.json")
+
+
+def test_a_formula_that_may_be_extrapolated_says_where() -> None:
+    wide = widened(PAPER)
+    assert wide.openF_range_mm == (3.0, 21.0)
+    assert wide.pressure_range_bar == (0.0, 3.0)
+    assert theta_deg(wide, 100.0, 8.0, 1.0) == theta_deg(PAPER, 100.0, 8.0, 1.0)
+    for formula in (PAPER, wide):
+        out = beyond(
+            formula, [84.0, 80.0, 100.0, 100.0], [6.0, 8.0, 15.0, 8.0], [2.0, 1.0, 1.0, 2.1]
+        )
+        assert out.tolist() == [False, True, True, True]
