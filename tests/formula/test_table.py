@@ -43,13 +43,7 @@ def test_table_5_by_the_look_up(shared: Path) -> None:
 def small(theta: list[list[list[float]]]) -> Table:
     array = np.array(theta)
     inside = np.zeros_like(array, dtype=bool)
-    return Table(
-        (1.0, 2.0),
-        (6.0, 8.0)[: array.shape[1]],
-        (90.0, 120.0),
-        array,
-        np.zeros_like(array, dtype=bool),
-    )
+    return Table((1.0, 2.0), (6.0, 8.0)[: array.shape[1]], (90.0, 120.0), array, inside)
 
 
 def test_least_excess_over_all_rows() -> None:

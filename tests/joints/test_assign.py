@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from formula.table import assign
 from formula.files import load_formula
+from formula.table import assign
 from profiletool.joints.assign import (
     END_WRAP_MM,
     WRAP_MM,
