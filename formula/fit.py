@@ -146,13 +146,15 @@ def errors_of(data: Data, predict: Callable[..., FloatArray]) -> Errors:
 
 def candidates(data: Data) -> tuple[Candidate, ...]:
     """Fit every form that the campaign has runs enough for, the best validated first."""
-    most = min(2, len(data.alpha_deg) - 1)
+    alphas, cuts, pressures = (len(np.unique(values)) for values in data.points[:3])
+    most = min(2, alphas - 1)
     found = []
     for J, K in product(_OPENF, _PRESSURE):
-        if len(data.openF_mm) <= J or len(data.pressure_bar) < K:
+        if alphas == 0 or cuts <= J or pressures < K:
             continue
         form = (J, K, most)
-        coefficients, scales, off = _solve(data, form, np.isfinite(data.points[3]))
+        everything = np.ones(len(data.points[3]), dtype=bool)
+        coefficients, scales, off = _solve(data, form, everything)
         apart = np.empty_like(off)
         runs = data.run
         for run in np.unique(runs):

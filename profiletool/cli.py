@@ -10,9 +10,10 @@ from typing import Annotated, Any, Literal, cast
 
 import typer
 
-from profiletool import __version__, cli_fe
+from profiletool import __version__, cli_derive, cli_fe
 from profiletool.console import (
     Debug,
+    Extrapolate,
     FormulaFile,
     Json,
     Quiet,
@@ -136,8 +137,13 @@ def design(
     ] = 0.0,
     end: Annotated[float, typer.Option("--to", help="End of the stretch, %.")] = 100.0,
     clearance: Annotated[float, typer.Option(help="Gap between tube and object, mm.")] = 0.0,
-    diameter: Annotated[float, typer.Option(help="Outer diameter of the tube, mm.")] = 20.0,
-    wall: Annotated[float, typer.Option(help="Wall of the tube, mm.")] = 2.0,
+    diameter: Annotated[
+        float | None,
+        typer.Option(help="Outer diameter of the tube, mm (default: the formula's, 20)."),
+    ] = None,
+    wall: Annotated[
+        float | None, typer.Option(help="Wall of the tube, mm (default: the formula's, 2).")
+    ] = None,
     root: Annotated[
         float, typer.Option(help="Least clamped length before the first joint's centre, mm.")
     ] = 10.0,
@@ -145,6 +151,7 @@ def design(
     max_pressure: Annotated[float, typer.Option(help="Highest pressure, bar.")] = 2.0,
     max_length: Annotated[float, typer.Option(help="Longest tube, mm.")] = 250.0,
     formula: FormulaFile = None,
+    extrapolate: Extrapolate = False,
     method: Annotated[
         Literal["optimal", "paper"],
         typer.Option(help="How joints are chosen: all at once, or one by one as the paper does."),
@@ -206,6 +213,7 @@ def design(
 
         folder = out or Path(f"{picture.stem}_design")
         output.check_free(folder, force)
+        known = pipeline.read_formula(formula, extrapolate)
         request = subject.Request(
             file=picture,
             scale=ScaleRequest(height, width, mm_per_px, marker_mm),
@@ -216,14 +224,16 @@ def design(
             tolerance_mm=tolerance,
             joints=joints,
             material=Material(
-                outer_diameter_mm=diameter,
-                wall_mm=wall,
+                outer_diameter_mm=known.outer_diameter_mm if diameter is None else diameter,
+                wall_mm=known.wall_mm if wall is None else wall,
                 root_mm=root,
                 pitch_mm=pitch,
                 max_pressure_bar=max_pressure,
                 max_length_mm=max_length,
+                rubber=known.rubber,
             ),
             formula=formula,
+            extrapolate=extrapolate,
             verify=verify,
             method=method,
             refine=refine,
@@ -258,6 +268,7 @@ for _command, _example in (
     (cli_fe.verify, "profiletool verify bulb_design/design.json"),
     (cli_fe.joint, "profiletool joint --openF 10 --alpha 84 --pressure 2.0"),
     (cli_fe.finger, "profiletool finger --out finger"),
+    (cli_derive.derive, "profiletool derive --diameter 16 --wall 1.6 --out tube16.json"),
 ):
     app.command(epilog=f"Example:  {_example}")(_command)
 
@@ -268,6 +279,7 @@ def table(
         str | None, typer.Option("--openF", help="Cuts, mm, with commas (default: 6,8,10).")
     ] = None,
     formula: FormulaFile = None,
+    extrapolate: Extrapolate = False,
     as_json: Json = False,
     as_csv: Annotated[bool, typer.Option("--csv", help="Print the table as CSV.")] = False,
     debug: Debug = False,
@@ -281,7 +293,7 @@ def table(
 
         try:
             cuts = None if openF is None else numbers("--openF", openF)
-            made = make_table(read_formula(formula), openF_mm=cuts)
+            made = make_table(read_formula(formula, extrapolate), openF_mm=cuts)
         except OutOfRange as error:
             raise UsageError(str(error)) from error
         if as_json and as_csv:
@@ -295,6 +307,7 @@ def assign(
     openF: Annotated[str, typer.Option("--openF", help="Cut of every joint, mm, with commas.")],
     theta: Annotated[str, typer.Option("--theta", help="Angle of every joint, deg, with commas.")],
     formula: FormulaFile = None,
+    extrapolate: Extrapolate = False,
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
@@ -314,7 +327,8 @@ def assign(
         if min(angles) <= 0.0:
             raise UsageError("--theta takes angles above 0; their direction does not matter here")
         try:
-            found = look_up(make_table(read_formula(formula), openF_mm=cuts), cuts, angles)
+            known = make_table(read_formula(formula, extrapolate), openF_mm=cuts)
+            found = look_up(known, cuts, angles)
         except OutOfRange as error:
             raise Infeasible(str(error)) from error
         text = assignment_json(found) if as_json else assignment_text(cuts, angles, found)

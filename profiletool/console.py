@@ -17,7 +17,15 @@ Debug = Annotated[bool, typer.Option("--debug", help="Show the full traceback of
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
 Quiet = Annotated[bool, typer.Option("--quiet", help="No progress on stderr.")]
 FormulaFile = Annotated[
-    Path | None, typer.Option("--formula", help="A formula file (default: the paper's formula).")
+    Path | None, typer.Option("--formula", help="A formula file, or by name paper (default) or fe.")
+]
+
+Extrapolate = Annotated[
+    bool,
+    typer.Option(
+        "--extrapolate",
+        help="Let the formula be used some way beyond what it was fitted on, with a warning.",
+    ),
 ]
 
 
@@ -55,16 +63,29 @@ def _silence(line: str) -> None:
 
 
 @contextmanager
-def progress_bar(what: str, quiet: bool) -> Iterator[Callable[[float], None] | None]:
-    """Show a bar on a terminal from the first share (0 to 1) that it is told; else nothing."""
+def progress_bar(
+    what: str, quiet: bool, *, left: bool = False
+) -> Iterator[Callable[[float], None] | None]:
+    """Show a bar on a terminal from the first share (0 to 1) that it is told; else nothing.
+
+    ``left``: with the time left in place of the time taken.
+    """
     if quiet or not sys.stderr.isatty():
         yield None
         return
     from rich.console import Console  # slow to load, and only a terminal needs it
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import (
+        BarColumn,
+        Progress,
+        TaskProgressColumn,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )  # fmt: skip
 
     bar = Progress(
-        TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn(),
+        TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(),
+        TimeRemainingColumn() if left else TimeElapsedColumn(),
         console=Console(stderr=True), transient=True,
     )  # fmt: skip
     task = bar.add_task(what, total=1.0)

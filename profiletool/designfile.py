@@ -91,6 +91,8 @@ def _check(design: Design, file: str) -> None:
     )
     if not sane:
         raise UnreadableInput(f"{file}: no tube and gauze can have such sizes")
+    if tube.rubber is not None and not tube.rubber.sane:
+        raise UnreadableInput(f"{file}: no rubber can have such constants")
     if not design.joints:
         raise UnreadableInput(f"{file} has no joints")
     end = 0.0

@@ -1,4 +1,4 @@
-"""The output folder: it appears whole or not at all."""
+"""The output folder, or file: it appears whole or not at all."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 
 from profiletool.errors import OutputError, UsageError
 
-_MARKS = ("design.json", "fe.json")  # either makes a folder ours to replace
+_MARKS = ("design.json", "fe.json", "formula.json")  # any makes a folder ours to replace
 
 
 def check_free(folder: Path, force: bool) -> None:
@@ -60,6 +60,47 @@ def write_folder(folder: Path, files: Mapping[str, bytes], force: bool) -> None:
             _move_into_place(fresh, target, Path(work) / "old")
     except OSError as error:
         raise _cannot_write(folder, error) from error
+
+
+def check_file(file: Path, force: bool) -> None:
+    """Refuse early to write over a file.
+
+    Raises
+    ------
+    UsageError
+        When the file exists and ``force`` is not given, or it is no file.
+    """
+    try:
+        if not (file.exists() or file.is_symlink()):
+            return
+    except OSError as error:
+        raise _cannot_write(file, error) from error
+    if not file.is_file() or file.is_symlink():
+        raise UsageError(f"{file} exists and is no file; choose another with --out")
+    if not force:
+        raise UsageError(f"{file} exists; replace it with --force or choose another with --out")
+
+
+def write_file(file: Path, data: bytes, force: bool) -> None:
+    """Write a file beside its place, then move it there in one step.
+
+    Raises
+    ------
+    UsageError
+        As `check_file`.
+    OutputError
+        When the system does not let us write; nothing is left behind then.
+    """
+    check_file(file, force)
+    target = file.absolute()
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=f".{target.name}-", dir=target.parent) as work:
+            fresh = Path(work) / "new"
+            fresh.write_bytes(data)
+            fresh.replace(target)
+    except OSError as error:
+        raise _cannot_write(file, error) from error
 
 
 def _cannot_write(folder: Path, error: OSError) -> OutputError:

@@ -11,13 +11,14 @@ import numpy as np
 
 from formula.errors import BadFormula
 from formula.files import load_formula
-from formula.theta import Formula
+from formula.theta import Formula, widened
 from profiletool.errors import UnreadableInput
 from profiletool.joints.assign import Layout
 from profiletool.joints.kinematics import deform, misfit
 from profiletool.joints.limits import (
     bridged,
     disagreement,
+    extrapolated,
     named,
     polygon_warnings,
     shape_warnings,
@@ -87,7 +88,7 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
         Of the class whose exit code fits.
     """
     check_request(request)
-    formula = read_formula(request.formula)
+    formula = read_formula(request.formula, request.extrapolate)
     subject = find_subject(request, say)
     profile = subject.profile
     attempt = _attempt(request, subject, formula, say, progress)
@@ -106,6 +107,7 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
     apart = [place.reason for place in places if place.reason not in reasons]
     notes = [*reasons, *apart, *plan.notes, *drawing_notes(request, subject)]
     notes += _method_notes(request, plan, design, profile, formula)
+    notes += extrapolated(design, formula)
     notes += disagreement(design.joints, design.pressure_bar)
     notes += shape_warnings(known, profile, request.tolerance_mm or DEPTH_MM)
     notes += _gauze_notes(layout, design.gauze)
@@ -170,8 +172,8 @@ def _method_notes(
         yield from bridged(profile)
 
 
-def read_formula(path: Path | None) -> Formula:
-    """Read a formula file, or the paper's formula.
+def read_formula(path: Path | None, extrapolate: bool = False) -> Formula:
+    """Read a formula file, or the paper's formula; let it be extrapolated or not.
 
     Raises
     ------
@@ -179,9 +181,10 @@ def read_formula(path: Path | None) -> Formula:
         When the file holds no formula.
     """
     try:
-        return load_formula(path)
+        formula = load_formula(path)
     except BadFormula as error:
         raise UnreadableInput(str(error)) from error
+    return widened(formula) if extrapolate else formula
 
 
 def _design(
@@ -203,7 +206,13 @@ def _design(
             bridged_share=float(np.mean(profile.bridged)),
             origin_px=subject.origin_px,
         ),
-        tube=Tube(material.outer_diameter_mm, material.wall_mm, layout.root_mm, layout.length_mm),
+        tube=Tube(
+            material.outer_diameter_mm,
+            material.wall_mm,
+            layout.root_mm,
+            layout.length_mm,
+            material.rubber,
+        ),
         gauze=gauze,
         formula=FormulaRef(formula.name, formula.sha256),
         pressure_bar=layout.pressure_bar,

@@ -35,6 +35,7 @@ from profiletool.records import (
 )
 from profiletool.refine import FeBench
 from profiletool.subject import Request
+from profiletool.verify import law_of
 
 S = TypeVar("S")
 
@@ -202,7 +203,10 @@ def _model(request: Request, formula: Formula) -> Model:
     material = request.material
     if request.formula is not None:
         return FormulaModel(formula, material.radius_mm)
-    return Response.load().scaled(material.outer_diameter_mm, material.wall_mm)
+    law = law_of(material.rubber)
+    return Response.load().scaled(
+        material.outer_diameter_mm, material.wall_mm, stiffness=law.C10 + law.C01
+    )
 
 
 def _by(model: Model) -> str:

@@ -21,6 +21,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from formula.theta import Rubber
+
 FloatArray = NDArray[np.float64]
 Side = Literal["left", "right"]
 
@@ -129,7 +131,10 @@ class Profile:
 
 @dataclass(frozen=True)
 class Material:
-    """The tube and gauze that a design starts from, and what they may be asked for."""
+    """The tube and gauze that a design starts from, and what they may be asked for.
+
+    ``rubber`` is None for the paper's.
+    """
 
     outer_diameter_mm: float = 20.0
     wall_mm: float = 2.0
@@ -139,6 +144,7 @@ class Material:
     turns: int = 2
     max_pressure_bar: float = 2.0
     max_length_mm: float = 250.0
+    rubber: Rubber | None = None
 
     @property
     def radius_mm(self) -> float:
@@ -191,12 +197,13 @@ class Source:
 
 @dataclass(frozen=True)
 class Tube:
-    """The silicone tube; ``length_mm`` from the clamped end to the closed one."""
+    """The tube; ``length_mm`` from the clamped end to the closed one, no rubber is the paper's."""
 
     outer_diameter_mm: float
     wall_mm: float
     root_mm: float
     length_mm: float
+    rubber: Rubber | None = None
 
 
 @dataclass(frozen=True)

@@ -47,6 +47,7 @@ class Request:
     place_step_mm: float = 1.0
     material: Material = field(default_factory=Material)
     formula: Path | None = None
+    extrapolate: bool = False
     verify: bool = False
     refine: bool = True
 

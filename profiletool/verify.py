@@ -17,8 +17,10 @@ from fem.element import face_nodes, natural_nodes, shape
 from fem.errors import BadGeometry, NotConverged
 from fem.gauze import THREAD_EA, Gauze
 from fem.loadpath import Critical as FemCritical
+from fem.material import PAPER_RUBBER, MooneyRivlin
 from fem.mesh import Mesh
 from fem.solve import Solution, State, solve
+from formula.theta import Rubber
 from profiletool.joints.kinematics import STEP_MM, misfit
 from profiletool.joints.model import Chain
 from profiletool.records import (
@@ -135,8 +137,16 @@ def _tube(
         windows,
         diameter=tube.outer_diameter_mm,
         wall=tube.wall_mm,
+        rubber=law_of(tube.rubber),
         gauze=Gauze(stiffness=thread * gauze.turns / gauze.pitch_mm),
     )
+
+
+def law_of(rubber: Rubber | None) -> MooneyRivlin:
+    """Give the law of a rubber; None is the paper's."""
+    if rubber is None:
+        return PAPER_RUBBER
+    return MooneyRivlin(rubber.C10_MPa, rubber.C01_MPa, rubber.K_MPa)
 
 
 def joint_actuator(

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
 
-from formula.theta import Formula
+from formula.theta import Formula, beyond
 from profiletool.joints.assign import NEAR_DEG, Layout
 from profiletool.joints.kinematics import depth_inside, meets_itself
 from profiletool.joints.pieces import Rules
@@ -109,7 +109,8 @@ def warnings(
             f'formula "{formula.name}" ends at {formula.pressure_range_bar[1]:g} bar: '
             "no higher pressure was considered"
         )
-    if layout.pressure_bar > _FORMULA_LOW_ABOVE_BAR and not verified:
+    theirs = formula.name == "paper"
+    if theirs and layout.pressure_bar > _FORMULA_LOW_ABOVE_BAR and not verified:
         found.append(
             f"formula (9) reads low above {_FORMULA_LOW_ABOVE_BAR:g} bar: expect the joints to "
             f"bend more than it says at {layout.pressure_bar:.2f} bar"
@@ -137,6 +138,20 @@ def bridged(profile: Profile) -> Iterator[str]:
     share = 100.0 * float(np.mean(profile.bridged))
     if share >= 0.5:
         yield f"{share:.0f} % of the profile is bridged: grooves too tight to enter"
+
+
+def extrapolated(design: Design, formula: Formula) -> Iterator[str]:
+    """Say for which joints the formula is used beyond what it was fitted on."""
+    out = [
+        joint.number
+        for joint in design.joints
+        if beyond(formula, joint.alpha_closed_deg, joint.openF_mm, design.pressure_bar)
+    ]
+    if out:
+        yield (
+            f'formula "{formula.name}" was not fitted for {named(out)}: its angle there is '
+            "extrapolated"
+        )
 
 
 def disagreement(joints: Sequence[Joint], pressure_bar: float) -> Iterator[str]:

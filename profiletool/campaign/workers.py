@@ -1,0 +1,218 @@
+"""Many runs at once: in this process, on processes of this machine, or on a cluster."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import os
+import signal
+import threading
+from collections import Counter, deque
+from collections.abc import Callable, Generator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from typing import Any
+
+from profiletool.campaign import runs
+from profiletool.campaign.runs import Outcome, Task
+from profiletool.campaign.store import Store
+from profiletool.errors import ProfiletoolError, UsageError
+
+RunOne = Callable[[Task], Outcome]
+Keyed = tuple[str, Task]
+# Outcomes as they come, under their keys; None where the process died over it again and again.
+Finished = Generator[tuple[str, Outcome | None]]
+
+AGAIN = 3  # times that a run is begun again whose process died
+DIED = Outcome((), (), (), (), "its process died")
+_CONNECT_SECONDS = 10.0
+
+
+def run_all(
+    tasks: Sequence[Task],
+    store: Store,
+    *,
+    workers: int,
+    scheduler: str | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    run: RunOne = runs.run,
+) -> list[Outcome]:
+    """Run tasks that the store does not hold yet; each outcome is kept as soon as it comes.
+
+    Parameters
+    ----------
+    tasks : sequence of Task
+        Equal ones are run once.
+    store : Store
+    workers : int
+        Processes, one thread each; 1 runs in this one. A cluster has its own.
+    scheduler : str, optional
+        Address of a dask.distributed scheduler to run on instead, tcp://HOST:PORT.
+    progress : callable, optional
+        Takes how many tasks are done, those found in the store too, and how many there are.
+    run : callable, optional
+        To be found by its name in every process.
+
+    Returns
+    -------
+    list of Outcome
+        In the order of the tasks. A run whose process died at every trial is a failure that is
+        not kept.
+
+    Raises
+    ------
+    UsageError
+        When there is no such scheduler, or its workers have another profiletool.
+    OutputError
+        When an outcome cannot be kept.
+    """
+    if workers < 1:
+        raise ValueError(f"workers must be 1 or more, not {workers}")
+    keys = [runs.key(task) for task in tasks]
+    count = Counter(keys)
+    store.sweep()
+    found = {name: kept for name in count if (kept := store.get(name)) is not None}
+    done = sum(count[name] for name in found)
+
+    def tell() -> None:
+        if progress is not None:
+            progress(done, len(tasks))
+
+    tell()
+    asked = dict(zip(keys, tasks, strict=True))
+    left = sorted(((k, t) for k, t in asked.items() if k not in found), key=_longest_first)
+    with contextlib.closing(_finished(left, workers, scheduler, run)) as finished:
+        for name, outcome in finished:
+            if outcome is not None:
+                store.put(name, outcome)
+            found[name] = DIED if outcome is None else outcome
+            done += count[name]
+            tell()
+    return [found[name] for name in keys]
+
+
+def _longest_first(keyed: Keyed) -> tuple[bool, float, float]:
+    _, task = keyed
+    return task.model == "converged", -task.openF_mm / task.diameter_mm, task.alpha_deg
+
+
+def _finished(left: list[Keyed], workers: int, scheduler: str | None, run: RunOne) -> Finished:
+    if not left:
+        return
+    if scheduler is not None:
+        yield from _on_cluster(left, scheduler, run)
+    elif workers == 1:
+        for name, task in left:
+            yield name, run(task)
+    else:
+        yield from _on_processes(left, workers, run)
+
+
+def _on_processes(left: list[Keyed], workers: int, run: RunOne) -> Finished:
+    """Run on processes, each a pool of its own, so that one that dies takes only its own run."""
+    context = get_context("spawn")
+    # All processes end as soon as the other end of their leash is let go of, or this one dies.
+    leash, hand = context.Pipe(duplex=False)
+    waiting, deaths = deque(left), Counter[str]()
+    idle: list[ProcessPoolExecutor] = []
+    busy: dict[Future[Outcome], tuple[ProcessPoolExecutor, Keyed]] = {}
+    try:
+        while waiting or busy:
+            while waiting and len(busy) < workers:
+                pool = idle.pop() if idle else ProcessPoolExecutor(1, context, _obey, (leash,))
+                try:
+                    future = pool.submit(_answer, run, *waiting[0])
+                except BrokenProcessPool:  # it died while it had nothing to do
+                    pool.shutdown(wait=False)
+                    continue
+                busy[future] = pool, waiting.popleft()
+            ended, _ = wait(busy, return_when=FIRST_COMPLETED)
+            # A bug in one run shall not cost the others that have just ended.
+            for future in sorted(ended, key=lambda f: f.exception() is not None):
+                pool, keyed = busy.pop(future)
+                try:
+                    outcome = future.result()
+                except BrokenProcessPool:
+                    pool.shutdown(wait=False)
+                    deaths[keyed[0]] += 1
+                    if deaths[keyed[0]] > AGAIN:
+                        yield keyed[0], None
+                    else:
+                        waiting.append(keyed)  # last: there may be more memory by then
+                    continue
+                idle.append(pool)
+                yield keyed[0], outcome
+    finally:
+        hand.close()
+        for pool in (*idle, *(pool for pool, _ in busy.values())):
+            pool.shutdown(cancel_futures=True)
+        leash.close()
+
+
+def _obey(leash: Connection) -> None:
+    """Make a process end with the one that started it, which alone hears of Ctrl-C."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with, args=(leash,), daemon=True).start()
+
+
+def _end_with(leash: Connection) -> None:
+    with contextlib.suppress(EOFError, OSError):
+        leash.recv_bytes()
+    os._exit(1)
+
+
+def _answer(run: RunOne, name: str, task: Task) -> Outcome:
+    """Run a task, elsewhere, if the model there is the one whose answer was asked for."""
+    if runs.key(task) != name:
+        raise UsageError(
+            "a worker has another version of the model; install the same profiletool everywhere"
+        )
+    return run(task)
+
+
+def _on_cluster(left: list[Keyed], address: str, run: RunOne) -> Finished:
+    """Run on a cluster, which begins again by itself what its workers lose."""
+    distributed = _dask()
+    with contextlib.closing(_client(distributed, address)) as client:
+        futures = {
+            client.submit(
+                _answer, run, name, task, key=f"profiletool-{name}", pure=True, retries=AGAIN
+            ): name
+            for name, task in left
+        }
+        for future in distributed.as_completed(futures, loop=client.loop):
+            if future.status in ("cancelled", "lost"):
+                raise ProfiletoolError(
+                    f"the scheduler at {address} is gone; what was finished is kept, run again"
+                )
+            error = future.exception()
+            if error is None:
+                yield futures[future], future.result()
+            elif isinstance(error, distributed.KilledWorker):
+                yield futures[future], None
+            elif isinstance(error, ModuleNotFoundError):
+                raise UsageError(
+                    f"a worker says: {error}; install the same profiletool everywhere"
+                ) from error
+            else:
+                raise error
+
+
+def _dask() -> Any:
+    try:
+        return importlib.import_module("distributed")
+    except ModuleNotFoundError as error:
+        raise UsageError(
+            "--scheduler needs dask.distributed; install profiletool[cluster]"
+        ) from error
+
+
+def _client(distributed: Any, address: str) -> Any:
+    try:
+        return distributed.Client(address, timeout=_CONNECT_SECONDS, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise UsageError(
+            f"no dask scheduler answers at {address}; start one there or leave out --scheduler"
+        ) from error
