@@ -13,7 +13,7 @@ from scipy.interpolate import PchipInterpolator, make_interp_spline
 
 from formula.data import Data, FloatArray
 
-# The runs that tell most about a function that is linear in alpha and openF: corners and middle.
+# Corners and middle: they tell a function that is a parabola in alpha and a line in openF.
 CORRECTIONS = 5
 
 
@@ -69,8 +69,8 @@ def corrected(guess: FloatArray, few: Data, whole: Data) -> Data:
     Returns
     -------
     Data
-        The guess times a ratio that is bilinear in alpha and openF at every pressure; the runs
-        themselves as they are.
+        The guess times a ratio that is a parabola in alpha and bilinear with openF at every
+        pressure; the runs themselves as they are.
     """
     alpha, openF = np.meshgrid(_unit(whole.alpha_deg), _unit(whole.openF_mm), indexing="ij")
     theta = np.array(guess)
@@ -80,8 +80,9 @@ def corrected(guess: FloatArray, few: Data, whole: Data) -> Data:
         if not made.any():
             theta[..., n] = np.nan
             continue
-        terms = [np.ones_like(alpha), alpha, openF, alpha * openF][: min(4, int(made.sum()))]
-        basis = np.stack(terms, axis=-1)
+        terms = (np.ones_like(alpha), alpha, openF, alpha**2, alpha * openF)
+        told = [term for term in terms if np.abs(term[made]).max() > 0.0]
+        basis = np.stack(told[: int(made.sum())], axis=-1)
         found = np.linalg.lstsq(basis[made], ratio[made], rcond=None)[0]
         theta[..., n] = np.where(made, few.theta_deg[..., n], guess[..., n] * (basis @ found))
     return Data(whole.alpha_deg, whole.openF_mm, whole.pressure_bar, theta)

@@ -12,6 +12,8 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from fem.solve import solve
+from formula.files import campaign_of, load_formula, read_bytes
+from formula.theta import theta_deg
 from profiletool.cli import app
 from profiletool.records import Material
 from profiletool.verify import joint_actuator
@@ -162,3 +164,14 @@ def test_an_earlier_file_is_kept() -> None:
     assert result.exit_code == 2
     assert "--force" in error_of(result)
     assert Path("x.json").read_text() == "mine"
+
+
+def test_the_formula_that_comes_along_is_that_of_our_finite_elements() -> None:
+    """Made anew with `derive --out formula/coefficients/fe.json` where the engine changes."""
+    fe = load_formula(Path("fe"))
+    run = solve(joint_actuator(10.0, 108.0, 270.0, Material()), [0.1, 0.2], threads=1)
+    theta = np.degrees([state.theta[0] for state in run.states[1:]])
+    np.testing.assert_allclose(theta_deg(fe, 108.0, 10.0, [1.0, 2.0]), theta, atol=0.25)
+    campaign = campaign_of(read_bytes("fe"), "fe")
+    assert campaign is not None
+    np.testing.assert_allclose(campaign.theta_deg[1, 2, [4, 9]], theta, rtol=1e-4)

@@ -5,8 +5,10 @@ from __future__ import annotations
 import contextlib
 import importlib
 import os
+import pickle
 import signal
 import threading
+from asyncio import CancelledError
 from collections import Counter, deque
 from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
@@ -16,7 +18,7 @@ from multiprocessing.connection import Connection
 from typing import Any
 
 from profiletool.campaign import runs
-from profiletool.campaign.runs import Outcome, Task
+from profiletool.campaign.runs import Outcome, Task, from_json, to_json
 from profiletool.campaign.store import Store
 from profiletool.errors import ProfiletoolError, UsageError
 
@@ -172,32 +174,50 @@ def _answer(run: RunOne, name: str, task: Task) -> Outcome:
     return run(task)
 
 
+def _far(run: RunOne, name: str, task: Task) -> bytes:
+    return to_json(_answer(run, name, task))
+
+
 def _on_cluster(left: list[Keyed], address: str, run: RunOne) -> Finished:
     """Run on a cluster, which begins again by itself what its workers lose."""
+
+    def answer(asked: bytes) -> bytes:
+        # Sent whole as it refers to nothing here. By its name it would end, not fail, a worker
+        # without this module; and so the scheduler needs no such module either.
+        import pickle
+
+        from profiletool.campaign.workers import _far
+
+        return _far(*pickle.loads(asked))
+
     distributed = _dask()
     with contextlib.closing(_client(distributed, address)) as client:
         futures = {
             client.submit(
-                _answer, run, name, task, key=f"profiletool-{name}", pure=True, retries=AGAIN
+                answer,
+                pickle.dumps((run, name, task)),
+                key=f"profiletool-{name}",
+                pure=True,
+                retries=AGAIN,
             ): name
             for name, task in left
         }
         for future in distributed.as_completed(futures, loop=client.loop):
-            if future.status in ("cancelled", "lost"):
-                raise ProfiletoolError(
-                    f"the scheduler at {address} is gone; what was finished is kept, run again"
-                )
-            error = future.exception()
-            if error is None:
-                yield futures[future], future.result()
-            elif isinstance(error, distributed.KilledWorker):
-                yield futures[future], None
-            elif isinstance(error, ModuleNotFoundError):
-                raise UsageError(
-                    f"a worker says: {error}; install the same profiletool everywhere"
-                ) from error
-            else:
-                raise error
+            try:
+                outcome = from_json(future.result())
+            except (Exception, CancelledError) as error:
+                if future.status != "error":
+                    raise ProfiletoolError(
+                        f"the scheduler at {address} is gone; what was finished is kept, run again"
+                    ) from error
+                if isinstance(error, ModuleNotFoundError):
+                    raise UsageError(
+                        f"a worker says: {error}; install the same profiletool everywhere"
+                    ) from error
+                if not isinstance(error, distributed.KilledWorker):
+                    raise
+                outcome = None
+            yield futures[future], outcome
 
 
 def _dask() -> Any:
