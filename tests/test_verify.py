@@ -11,8 +11,11 @@ import pytest
 
 import fem.solve
 from fem.errors import NotConverged
+from fem.material import PAPER_RUBBER
+from formula.theta import Rubber
 from profiletool import verify
-from profiletool.designfile import load_design
+from profiletool.designfile import load_design, to_json
+from profiletool.errors import UnreadableInput
 from profiletool.joints.kinematics import deform
 from profiletool.profile.curve import arc_length
 from profiletool.records import Design, Joint, Pose, Profile, side_sign
@@ -219,3 +222,20 @@ def test_angles_go_on_beyond_half_a_turn(samples: Path, monkeypatch: pytest.Monk
     actuator = verify.actuator_of(short(samples))
     found = verify.inflate(actuator, [0.05, 0.1, 0.15], verify.LYING, verify.DOWN).verification
     assert found.theta_deg[0] == pytest.approx([170.0, 200.0, 100.0])
+
+
+def test_the_tube_is_of_its_own_rubber(samples: Path, tmp_path: Path) -> None:
+    plain = short(samples)
+    assert plain.tube.rubber is None
+    assert verify.actuator_of(plain).rubber == PAPER_RUBBER
+    stiff = Rubber("stiff", 0.1388, 0.1256, 6.434)
+    design = replace(plain, tube=replace(plain.tube, rubber=stiff))
+    (tmp_path / "design.json").write_text(to_json(design))
+    read = load_design(tmp_path / "design.json")
+    assert read.tube.rubber == stiff
+    law = verify.actuator_of(read).rubber
+    assert pytest.approx(2.0 * (PAPER_RUBBER.C10 + PAPER_RUBBER.C01)) == law.C10 + law.C01
+    broken = replace(design, tube=replace(design.tube, rubber=replace(stiff, C10_MPa=-1.0)))
+    (tmp_path / "broken.json").write_text(to_json(broken))
+    with pytest.raises(UnreadableInput, match="rubber"):
+        load_design(tmp_path / "broken.json")
