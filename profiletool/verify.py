@@ -156,6 +156,7 @@ def joint_actuator(
     return chain(
         30.0, [30.0], [openF_mm], [float(np.radians(alpha_deg))], [_center(center_deg)],
         diameter=material.outer_diameter_mm, wall=material.wall_mm,
+        rubber=law_of(material.rubber),
     )  # fmt: skip
 
 

@@ -204,7 +204,7 @@ def _on_cluster(left: list[Keyed], address: str, run: RunOne) -> Finished:
         }
         for future in distributed.as_completed(futures, loop=client.loop):
             try:
-                outcome = from_json(future.result())
+                told = future.result()
             except (Exception, CancelledError) as error:
                 if future.status != "error":
                     raise ProfiletoolError(
@@ -216,8 +216,10 @@ def _on_cluster(left: list[Keyed], address: str, run: RunOne) -> Finished:
                     ) from error
                 if not isinstance(error, distributed.KilledWorker):
                     raise
-                outcome = None
-            yield futures[future], outcome
+                told = None
+            name = futures.pop(future)
+            future.release()  # else what a killed worker has long handed over is run again
+            yield name, None if told is None else from_json(told)
 
 
 def _dask() -> Any:
