@@ -79,13 +79,16 @@ def quadratic_in_alpha(
     formula: Formula, openF_mm: ArrayLike, pressure_bar: ArrayLike
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Return a, b, c of theta = a alpha² + b alpha + c at given openF and P (broadcast)."""
-    terms = np.asarray(formula.terms)  # (openF powers, P powers, alpha powers)
     openF, P = np.broadcast_arrays(
         np.asarray(openF_mm, dtype=float), np.asarray(pressure_bar, dtype=float)
     )
-    by_openF = openF[..., None] ** np.arange(terms.shape[0])
-    by_pressure = P[..., None] ** np.arange(1, terms.shape[1] + 1)
-    c, b, a = np.moveaxis(np.einsum("...j,...k,jki->...i", by_openF, by_pressure, terms), -1, 0)
+    total = np.zeros((3, *openF.shape))
+    for power, block in enumerate(formula.terms):
+        rows = np.zeros((3, *openF.shape))
+        for row in reversed(block):
+            rows = (rows + np.reshape(row, (3,) + (1,) * openF.ndim)) * P
+        total += rows * openF**power
+    c, b, a = total
     return a, b, c
 
 

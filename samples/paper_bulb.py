@@ -12,7 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from formula.theta import load_formula, theta_deg
+from formula.files import load_formula
+from formula.theta import theta_deg
 from profiletool.designfile import to_json
 from profiletool.joints.assign import Layout
 from profiletool.joints.kinematics import deform, misfit
