@@ -15,7 +15,7 @@ _MOST_RUNS = 10_000
 
 
 def derive(
-    out: Annotated[Path, typer.Option(help="The formula file to write (JSON).")],
+    out: Annotated[Path | None, typer.Option(help="The formula file to write (JSON).")] = None,
     diameter: Annotated[float, typer.Option(help="Outer diameter of the tube, mm.")] = 20.0,
     wall: Annotated[float, typer.Option(help="Wall of the tube, mm.")] = 2.0,
     rubber: Annotated[
@@ -73,6 +73,8 @@ def derive(
         if rubber == "list":
             typer.echo(presets_text(), nl=False)
             return
+        if out is None:
+            raise UsageError("--out FILE is missing: where the formula shall be written")
         from profiletool import output
         from profiletool.derive import Plan, check_plan, formula_file, load_base, name_of, similar
         from profiletool.derive import derive as run

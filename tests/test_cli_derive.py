@@ -122,7 +122,7 @@ def test_a_design_has_the_tube_and_the_rubber_of_its_formula(
 
 
 def test_rubbers_are_listed() -> None:
-    result = call("derive", "--rubber", "list", "--out", "x.json")
+    result = call("derive", "--rubber", "list")
     assert result.exit_code == 0
     assert "paper" in result.stdout
     assert "Actuators 9(4):113" in result.stdout
@@ -142,6 +142,7 @@ def test_rubbers_are_listed() -> None:
         (("--from", "paper"), 2, "holds no campaign"),
         (("--from", "nothing.json"), 3, "cannot read"),
         (("--out", "."), 2, "--out"),
+        ((), 2, "--out FILE is missing"),
     ],
 )
 def test_refusals_before_anything_is_run(
@@ -151,7 +152,7 @@ def test_refusals_before_anything_is_run(
         raise AssertionError("nothing should run")
 
     monkeypatch.setattr("profiletool.campaign.workers.run_all", never)
-    out = () if "--out" in options else ("--out", "x.json")
+    out = () if "--out" in options or not options else ("--out", "x.json")
     result = call("derive", *options, *out)
     assert result.exit_code == code, result.stderr
     assert says in error_of(result)
