@@ -61,6 +61,8 @@ def pid_of(mark: Path) -> int:
 
 def main() -> None:
     """Run a campaign: the store's folder, tasks, workers."""
+    # A shell that runs the tests in its background has switched Ctrl-C off for all below it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     folder, count, workers = sys.argv[1:]
     tasks = [task(n) for n in range(int(count))]
     found = run_all(tasks, Store(Path(folder)), workers=int(workers), run=run)
