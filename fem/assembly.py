@@ -64,6 +64,7 @@ class Inverse:
     @property
     def negative(self) -> int:
         """How many negative eigenvalues the tangent has: 0 where the state is stable."""
+        self._check()
         return sum(pivot.negative for pivot in self._system.pivots())
 
     def solve(self, rhs: FloatArray, *, positive: bool = False) -> FloatArray:
@@ -72,9 +73,12 @@ class Inverse:
         ``positive``: in place of the tangent K = L S L^T, S = +-1, with L L^T, which is positive
         definite: the solution leads downhill in the energy whatever K is.
         """
+        self._check()
+        return self._system.solve(np.atleast_2d(rhs), positive=positive).reshape(rhs.shape)
+
+    def _check(self) -> None:
         if self._version != self._system.version:
             raise RuntimeError("the tangent has been factored anew since")
-        return self._system.solve(np.atleast_2d(rhs), positive=positive).reshape(rhs.shape)
 
 
 class System:

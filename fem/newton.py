@@ -36,7 +36,7 @@ class Correction:
     pressure : float, MPa
     forces : Forces
     inverse : Inverse or None
-        Of the last tangent that could be factored.
+        Of the last tangent; None where a brick was turned inside out.
     first, residual : float
         Residual of the predicted and of the last state, relative to the pressure's forces.
     factored, iterations : int
@@ -128,22 +128,24 @@ def descend(
     lead it astray: where there is a stable equilibrium downhill, it is found.
     """
     outcome: Outcome = "residual"
-    first = np.inf
+    first = residual = np.inf
     factored = iterations = 0
-    forces, inverse = system.factor(pose.x, pressure)
-    while inverse is not None:
+    while factored < _DESCENTS:
+        forces, inverse = system.factor(pose.x, pressure)
         factored += 1
+        if inverse is None:
+            outcome = "inverted"
+            break
         residual = relative_residual(forces, pressure)
         first = residual if factored == 1 else first
         if residual <= tolerance and inverse.negative == 0:
             outcome = "converged"
             break
         moved = _downhill(system, chart, pose, pressure, forces, inverse)
-        if moved is None or factored == _DESCENTS:
+        if moved is None:
             break
         pose = moved
         iterations += 1
-        forces, inverse = system.factor(pose.x, pressure)
     return Correction(
         outcome, pose, pressure, forces, inverse, first, residual, factored, iterations
     )

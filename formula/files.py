@@ -16,7 +16,7 @@ import numpy as np
 
 from formula.data import Data, FloatArray
 from formula.errors import BadFormula
-from formula.theta import COEFFICIENTS, Formula, Rubber, Terms, paper_terms
+from formula.theta import COEFFICIENTS, Formula, RubberLaw, Terms, paper_terms
 
 SCHEMA, POLYNOMIAL = "profiletool.formula/1", "profiletool.formula/2"
 _ABSURD = 1e9
@@ -41,8 +41,9 @@ def load_formula(path: Path | None = None) -> Formula:
     BadFormula
         When the file cannot be read or is no formula file of this schema.
     """
-    name = "paper" if path is None else str(path)
-    return parse_formula(read_bytes(name), name)
+    if path is None:
+        return parse_formula(shipped()["paper"], "paper")
+    return parse_formula(read_bytes(str(path)), str(path))
 
 
 def read_bytes(name: str) -> bytes:
@@ -148,9 +149,9 @@ def _ascending(tree: dict[str, Any], key: str, file: str) -> FloatArray:
     return axis
 
 
-def _rubber(domain: dict[str, Any], file: str) -> Rubber:
+def _rubber(domain: dict[str, Any], file: str) -> RubberLaw:
     tree = _mapping(domain, "rubber", file)
-    rubber = Rubber(
+    rubber = RubberLaw(
         str(tree.get("name", "")),
         _number(tree, "C10_MPa", file),
         _number(tree, "C01_MPa", file),

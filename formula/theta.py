@@ -15,7 +15,7 @@ Terms = tuple[tuple[tuple[float, float, float], ...], ...]
 
 
 @dataclass(frozen=True)
-class Rubber:
+class RubberLaw:
     """The law of the rubber that a formula holds for (Mooney-Rivlin, MPa)."""
 
     name: str
@@ -49,7 +49,7 @@ class Formula:
         The tube that it was fitted on.
     alpha_range_deg, openF_range_mm, pressure_range_bar : tuple of 2 float
         What may be asked of it.
-    rubber : Rubber or None
+    rubber : RubberLaw or None
         Where the file does not say, the paper's.
     fitted : tuple of 3 ranges, or None
         Of alpha, openF and pressure: what it was fitted on, where more than that may be asked.
@@ -64,7 +64,7 @@ class Formula:
     alpha_range_deg: tuple[float, float]
     openF_range_mm: tuple[float, float]
     pressure_range_bar: tuple[float, float]
-    rubber: Rubber | None = None
+    rubber: RubberLaw | None = None
     fitted: tuple[tuple[float, float], ...] | None = None
 
 

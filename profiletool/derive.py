@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 
 from fem.errors import BadGeometry
+from fem.material import MooneyRivlin
 from formula.data import Data
 from formula.errors import BadFormula
-from formula.files import POLYNOMIAL, campaign_of, parse_formula, read_bytes
+from formula.files import campaign_of, parse_formula, read_bytes
 from formula.fit import Candidate, Errors, PaperFit, best, candidates, errors_of, fit_paper
 from formula.similar import carried, corrected, correction_runs
-from formula.theta import COEFFICIENTS, Formula, Terms, theta_deg
+from formula.theta import Formula, Terms, theta_deg
 from profiletool.campaign.runs import Model, Outcome, Task, actuator_of
 from profiletool.errors import NotVerified, UnreadableInput, UsageError
 from profiletool.records import FloatArray
-from profiletool.rubber import Rubber
+from profiletool.rubber import Rubber, law_of
 
 RunAll = Callable[[Sequence[Task]], list[Outcome]]
+_MOST_RUNS = 10_000
 _SAME = 0.02  # how far shape and kind of rubber may differ and still count as the same
 
 
@@ -119,7 +119,7 @@ def load_base(name: str) -> Base:
         formula, campaign = parse_formula(data, name), campaign_of(data, name)
     except BadFormula as error:
         raise UnreadableInput(str(error)) from error
-    if campaign is None or formula.rubber is None:
+    if campaign is None:
         raise UsageError(f"{name} holds no campaign to start from; derive one without --from first")
     return Base(formula, campaign)
 
@@ -174,53 +174,6 @@ def formula_of(plan: Plan, terms: Terms) -> Formula:
     )  # fmt: skip
 
 
-def formula_file(found: Derivation, name: str) -> bytes:
-    """Write a derivation as a formula file; the same derivation gives the same bytes."""
-    plan, law = found.plan, found.plan.rubber.law
-    tree = {
-        "schema": POLYNOMIAL,
-        "name": name,
-        "source": _source(found),
-        "powers": dict(zip(("openF", "pressure", "alpha"), found.chosen.powers, strict=True)),
-        "terms": found.chosen.terms,
-        "domain": {
-            "outer_diameter_mm": plan.diameter_mm,
-            "wall_mm": plan.wall_mm,
-            "rubber": {
-                "name": plan.rubber.name,
-                "C10_MPa": law.C10,
-                "C01_MPa": law.C01,
-                "K_MPa": law.K,
-            },
-            "alpha_closed_deg": [plan.alpha_deg[0], plan.alpha_deg[-1]],
-            "openF_mm": [plan.openF_mm[0], plan.openF_mm[-1]],
-            "pressure_bar": [0.0, plan.pressures_bar[-1]],
-        },
-        "fit": {
-            "rms_deg": _deg(found.chosen.errors.rms),
-            "max_deg": _deg(found.chosen.errors.largest),
-            "cross_validated_rms_deg": _deg(found.chosen.validated.rms),
-            "cross_validated_max_deg": _deg(found.chosen.validated.largest),
-        },
-        "paper_form": _paper_form(found),
-        "base": None if found.base is None else _base(found.base),
-        "failures": [
-            {"alpha_closed_deg": a, "openF_mm": o, "reason": why} for a, o, why in found.failures
-        ],
-        "campaign": {
-            "model": plan.model,
-            "runs": int(np.isfinite(found.made.theta_deg).any(axis=2).sum()),
-            "alpha_closed_deg": plan.alpha_deg,
-            "openF_mm": plan.openF_mm,
-            "pressure_bar": plan.pressures_bar,
-            "theta_deg": _rows(found.data.theta_deg),
-            "dx_mm": _rows(found.dx_mm),
-            "dy_mm": _rows(found.dy_mm),
-        },
-    }
-    return (json.dumps(tree, indent=1, allow_nan=False) + "\n").encode()
-
-
 def check_plan(plan: Plan) -> None:
     """Refuse a tube or a cut that cannot be, before anything is run.
 
@@ -228,6 +181,9 @@ def check_plan(plan: Plan) -> None:
     ------
     UsageError
     """
+    runs = len(plan.alpha_deg) * len(plan.openF_mm)
+    if runs > _MOST_RUNS:
+        raise UsageError(f"{runs} joints are too many, more than {_MOST_RUNS}; name fewer")
     for i, j in product(range(len(plan.alpha_deg)), range(len(plan.openF_mm))):
         try:
             actuator_of(plan.task(i, j))
@@ -235,18 +191,12 @@ def check_plan(plan: Plan) -> None:
             raise UsageError(str(error)) from error
 
 
-def name_of(out: Path) -> str:
-    """Name a formula by its file."""
-    return out.stem
-
-
 def _guess(plan: Plan, base: Base, axes: Sequence[FloatArray]) -> FloatArray:
-    rubber, law = base.formula.rubber, plan.rubber.law
-    assert rubber is not None
+    law, known = plan.rubber.law, law_of(base.formula.rubber)
     guess = carried(
         base.data, axes[0], axes[1], axes[2],
         plan.diameter_mm / base.formula.outer_diameter_mm,
-        (law.C10 + law.C01) / (rubber.C10_MPa + rubber.C01_MPa),
+        law.shear_modulus / known.shear_modulus,
     )  # fmt: skip
     if not np.isfinite(guess).any():
         raise UsageError(
@@ -265,17 +215,16 @@ def _guess(plan: Plan, base: Base, axes: Sequence[FloatArray]) -> FloatArray:
 
 def similar(plan: Plan, base: Base) -> bool:
     """Whether the tube and the kind of rubber are those of a known campaign but for scale."""
-    rubber, law = base.formula.rubber, plan.rubber.law
-    if rubber is None:
-        return False
-    stiffness, known = law.C10 + law.C01, rubber.C10_MPa + rubber.C01_MPa
-    pairs = (
-        (
-            plan.wall_mm / plan.diameter_mm,
-            base.formula.wall_mm / base.formula.outer_diameter_mm,
-        ),
-        (1.0 + law.C01 / stiffness, 1.0 + rubber.C01_MPa / known),
-        (law.K / stiffness, rubber.K_MPa / known),
+
+    def numbers(diameter: float, wall: float, law: MooneyRivlin) -> tuple[float, ...]:
+        stiffness = law.C10 + law.C01
+        return wall / diameter, 1.0 + law.C01 / stiffness, law.K / stiffness
+
+    known = base.formula
+    pairs = zip(
+        numbers(plan.diameter_mm, plan.wall_mm, plan.rubber.law),
+        numbers(known.outer_diameter_mm, known.wall_mm, law_of(known.rubber)),
+        strict=True,
     )
     return all(abs(a / b - 1.0) <= _SAME for a, b in pairs)
 
@@ -287,56 +236,6 @@ def _predictor(plan: Plan, terms: Terms) -> Callable[..., FloatArray]:
         return theta_deg(formula, alpha, openF, P)
 
     return predict
-
-
-def _source(found: Derivation) -> str:
-    runs = int(np.isfinite(found.made.theta_deg).any(axis=2).sum())
-    plan = found.plan
-    told = (
-        f"profiletool derive: finite elements of {runs} joints, tube {plan.diameter_mm:g} x "
-        f"{plan.wall_mm:g} mm, {plan.rubber.name} ({plan.rubber.source})"
-    )
-    if found.base is not None:
-        told += f', from the campaign of "{found.base.formula.name}" by similarity'
-    return told + (", modelled as the paper did" if plan.model == "paper" else "")
-
-
-def _paper_form(found: Derivation) -> dict[str, object] | None:
-    fit, errors = found.paper, found.paper_errors
-    if fit is None or errors is None:
-        return None
-    return {
-        "coefficients": dict(zip(COEFFICIENTS, fit.coefficients, strict=True)),
-        "rms_deg": _deg(errors.rms),
-        "max_deg": _deg(errors.largest),
-        "R2": {
-            "theta_openF_least": _r2(np.nanmin(fit.line_R2)),
-            "m_P": [_r2(v) for v in fit.slope_R2],
-            "c_P": [_r2(v) for v in fit.intercept_R2],
-            "a1_alpha": _r2(fit.a1_R2),
-            "a2_alpha": _r2(fit.a2_R2),
-            "a3_alpha": _r2(fit.a3_R2),
-        },
-    }
-
-
-def _base(base: Base) -> dict[str, str]:
-    return {"name": base.formula.name, "sha256": base.formula.sha256}
-
-
-def _rows(values: FloatArray) -> list[list[list[float | None]]]:
-    return [
-        [[round(v, 6) if np.isfinite(v) else None for v in line] for line in block]
-        for block in values.tolist()
-    ]
-
-
-def _deg(value: float) -> float:
-    return round(value, 4)
-
-
-def _r2(value: float) -> float | None:
-    return round(float(value), 6) if np.isfinite(value) else None
 
 
 def _too_little(error: BadFormula, failures: Sequence[tuple[float, float, str]]) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import shutil
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from profiletool.errors import OutputError, UsageError
@@ -21,11 +21,8 @@ def check_free(folder: Path, force: bool) -> None:
     UsageError
         When the folder exists and ``force`` is not given, or it is no folder of ours.
     """
-    try:
-        if not (folder.exists() or folder.is_symlink()):
-            return
-    except OSError as error:
-        raise _cannot_write(folder, error) from error
+    if not _stands(folder):
+        return
     if not folder.is_dir() or folder.is_symlink():
         raise UsageError(f"{folder} exists and is no folder; choose another with --out")
     ours = any((folder / mark).is_file() for mark in _MARKS) or not any(folder.iterdir())
@@ -49,17 +46,12 @@ def write_folder(folder: Path, files: Mapping[str, bytes], force: bool) -> None:
         When the system does not let us write; nothing is left behind then.
     """
     check_free(folder, force)
-    target = folder.absolute()
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix=f".{target.name}-", dir=target.parent) as work:
-            fresh = Path(work) / "new"
-            fresh.mkdir()
-            for name, data in files.items():
-                (fresh / name).write_bytes(data)
-            _move_into_place(fresh, target, Path(work) / "old")
-    except OSError as error:
-        raise _cannot_write(folder, error) from error
+    with _beside(folder) as work:
+        fresh = work / "new"
+        fresh.mkdir()
+        for name, data in files.items():
+            (fresh / name).write_bytes(data)
+        _move_into_place(fresh, folder.absolute(), work / "old")
 
 
 def check_file(file: Path, force: bool) -> None:
@@ -70,11 +62,8 @@ def check_file(file: Path, force: bool) -> None:
     UsageError
         When the file exists and ``force`` is not given, or it is no file.
     """
-    try:
-        if not (file.exists() or file.is_symlink()):
-            return
-    except OSError as error:
-        raise _cannot_write(file, error) from error
+    if not _stands(file):
+        return
     if not file.is_file() or file.is_symlink():
         raise UsageError(f"{file} exists and is no file; choose another with --out")
     if not force:
@@ -92,20 +81,35 @@ def write_file(file: Path, data: bytes, force: bool) -> None:
         When the system does not let us write; nothing is left behind then.
     """
     check_file(file, force)
-    target = file.absolute()
+    with _beside(file) as work:
+        fresh = work / "new"
+        fresh.write_bytes(data)
+        fresh.replace(file.absolute())
+
+
+def _stands(place: Path) -> bool:
+    """Whether there is something already, a broken link too."""
+    try:
+        return place.exists() or place.is_symlink()
+    except OSError as error:
+        raise _cannot_write(place, error) from error
+
+
+@contextlib.contextmanager
+def _beside(place: Path) -> Iterator[Path]:
+    """Give a folder to work in beside a place, and say so where the system does not let us."""
+    target = place.absolute()
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix=f".{target.name}-", dir=target.parent) as work:
-            fresh = Path(work) / "new"
-            fresh.write_bytes(data)
-            fresh.replace(target)
+            yield Path(work)
     except OSError as error:
-        raise _cannot_write(file, error) from error
+        raise _cannot_write(place, error) from error
 
 
-def _cannot_write(folder: Path, error: OSError) -> OutputError:
+def _cannot_write(place: Path, error: OSError) -> OutputError:
     reason = error.strerror or str(error)
-    return OutputError(f"cannot write {folder}: {reason}; choose another place with --out")
+    return OutputError(f"cannot write {place}: {reason}; choose another place with --out")
 
 
 def _move_into_place(fresh: Path, target: Path, aside: Path) -> None:

@@ -34,8 +34,8 @@ from profiletool.records import (
     Shape,
 )
 from profiletool.refine import FeBench
+from profiletool.rubber import law_of
 from profiletool.subject import Request
-from profiletool.verify import law_of
 
 S = TypeVar("S")
 

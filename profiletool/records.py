@@ -21,7 +21,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from formula.theta import Rubber
+from formula.theta import RubberLaw
 
 FloatArray = NDArray[np.float64]
 Side = Literal["left", "right"]
@@ -144,7 +144,7 @@ class Material:
     turns: int = 2
     max_pressure_bar: float = 2.0
     max_length_mm: float = 250.0
-    rubber: Rubber | None = None
+    rubber: RubberLaw | None = None
 
     @property
     def radius_mm(self) -> float:
@@ -203,7 +203,7 @@ class Tube:
     wall_mm: float
     root_mm: float
     length_mm: float
-    rubber: Rubber | None = None
+    rubber: RubberLaw | None = None
 
 
 @dataclass(frozen=True)

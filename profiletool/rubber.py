@@ -9,8 +9,10 @@ from pathlib import Path
 from types import MappingProxyType
 
 from fem.material import PAPER_RUBBER, MooneyRivlin
+from formula.theta import RubberLaw
+from profiletool.columns import NUMBER
 from profiletool.errors import UnreadableInput, UsageError
-from profiletool.rubber_fit import NUMBER, STIFFNESSES, fit_uniaxial, read_uniaxial
+from profiletool.rubber_fit import STIFFNESSES, fit_uniaxial, read_uniaxial
 
 PAPER_NU = 0.46
 NUS = (0.3, 0.4995)  # below is foam; beyond, the bulk modulus is 1000 times the shear modulus
@@ -125,6 +127,13 @@ def parse_rubber(text: str) -> Rubber:
     if given and (_exists(path) or path.suffix.lower() in (".csv", ".txt", ".tsv", ".dat")):
         return _by_test(path)
     raise UsageError(f"no rubber {_quoted(given)}; give one of {', '.join(PRESETS)}, or {_FORMS}")
+
+
+def law_of(constants: RubberLaw | None) -> MooneyRivlin:
+    """Give the law of constants as files hold them; None is the paper's."""
+    if constants is None:
+        return PAPER_RUBBER
+    return MooneyRivlin(constants.C10_MPa, constants.C01_MPa, constants.K_MPa)
 
 
 def presets_text() -> str:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import minimize_scalar
 
 from fem.material import FloatArray, MooneyRivlin, kinematics, stress, tangent, volumetric
+from profiletool.columns import NUMBER, read_lines, shown
 from profiletool.errors import UnreadableInput
 
 MOST_POINTS = 20_000
@@ -19,11 +20,9 @@ STRETCHES = (0.4, 8.0)
 WORST_RMS = 0.15  # of the range of the stress
 STIFFNESSES = (5e-4, 5.0)  # of C10 + C01, MPa: from gels to tyres
 _STEPS, _STEP, _TIGHT = 60, 0.2, 1e-13
-NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _UNITS = {"mpa": 1.0, "n/mm2": 1.0, "n/mm^2": 1.0, "n/mm²": 1.0, "kpa": 1e-3}
 _OTHER_UNITS = {"pa", "gpa", "psi", "ksi", "bar", "n"}
 _TRUE = re.compile("true|cauchy")
-_SHOWN = 20  # characters of a bad field in the message
 
 
 @dataclass(frozen=True)
@@ -189,10 +188,9 @@ def read_uniaxial(data: bytes) -> tuple[FloatArray, FloatArray]:
     Parameters
     ----------
     data : bytes
-        UTF-8 or Latin-1 text of the columns stretch and nominal stress in MPa. A header line may
-        name them in any order and among others: ``stretch`` or ``strain`` (a fraction), and
-        ``stress``, ``stress_MPa`` or ``stress_kPa``. Fields are separated as in a profile: by
-        semicolons (then commas may be decimal), tabs, commas or spaces; ``#`` starts a comment.
+        Text as `profiletool.columns.read_lines` takes it, of the columns stretch and nominal
+        stress in MPa. A header line may name them in any order and among others: ``stretch`` or
+        ``strain`` (a fraction), and ``stress``, ``stress_MPa`` or ``stress_kPa``.
 
     Returns
     -------
@@ -204,19 +202,9 @@ def read_uniaxial(data: bytes) -> tuple[FloatArray, FloatArray]:
     UnreadableInput
         Naming the line that makes no sense.
     """
-    if b"\0" in data:
-        raise UnreadableInput("not plain text; save it as CSV in UTF-8")
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = data.decode("latin-1")  # for words in the header: numbers are ASCII anyway
     columns: _Columns | None = None
     rows: list[tuple[float, float]] = []
-    for number, line in enumerate(text.splitlines(), start=1):
-        content = line.partition("#")[0].strip()
-        if not content:
-            continue
-        fields = _fields(content)
+    for number, fields in read_lines(data):
         if columns is None:
             if not any(NUMBER.fullmatch(field) for field in fields):
                 columns = _header(fields)
@@ -252,21 +240,11 @@ class _Columns:
             value = float(field) if NUMBER.fullmatch(field) else np.nan
             if not np.isfinite(value):
                 raise UnreadableInput(
-                    f"line {number}: {field[:_SHOWN]!a} is no finite number; "
+                    f"line {number}: {shown(field)} is no finite number; "
                     "give stretch and nominal stress in MPa"
                 )
             values.append(value)
         return values[0], values[1]
-
-
-def _fields(text: str) -> list[str]:
-    """Split a line; a decimal comma is turned into a point where semicolons separate."""
-    if ";" in text:
-        return [field.strip().replace(",", ".") for field in text.split(";")]
-    for separator in ("\t", ","):
-        if separator in text:
-            return [field.strip() for field in text.split(separator)]
-    return text.split()
 
 
 def _header(fields: list[str]) -> _Columns:

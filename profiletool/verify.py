@@ -17,10 +17,8 @@ from fem.element import face_nodes, natural_nodes, shape
 from fem.errors import BadGeometry, NotConverged
 from fem.gauze import THREAD_EA, Gauze
 from fem.loadpath import Critical as FemCritical
-from fem.material import PAPER_RUBBER, MooneyRivlin
 from fem.mesh import Mesh
 from fem.solve import Solution, State, solve
-from formula.theta import Rubber
 from profiletool.joints.kinematics import STEP_MM, misfit
 from profiletool.joints.model import Chain
 from profiletool.records import (
@@ -37,6 +35,7 @@ from profiletool.records import (
 )
 from profiletool.records import Gauze as DesignGauze
 from profiletool.records import Tube as DesignTube
+from profiletool.rubber import law_of
 
 STEPS = 10  # pressures that are reported where nothing else is asked for,
 CHECK_STEPS = 5  # and where a design is checked
@@ -140,13 +139,6 @@ def _tube(
         rubber=law_of(tube.rubber),
         gauze=Gauze(stiffness=thread * gauze.turns / gauze.pitch_mm),
     )
-
-
-def law_of(rubber: Rubber | None) -> MooneyRivlin:
-    """Give the law of a rubber; None is the paper's."""
-    if rubber is None:
-        return PAPER_RUBBER
-    return MooneyRivlin(rubber.C10_MPa, rubber.C01_MPa, rubber.K_MPa)
 
 
 def joint_actuator(

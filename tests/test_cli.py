@@ -12,29 +12,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image, ImageDraw
-from typer.testing import CliRunner, Result
+from typer.testing import Result
 
-from profiletool.cli import app, design_main, main
+from profiletool.cli import design_main, main
 from profiletool.console import progress_bar
+from tests.calls import call, error_of
 
 REST = "finger_rest.csv"
-
-
-def call(*arguments: object) -> Result:
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
 
 
 def unverified(*arguments: object) -> Result:
     """Design without finite elements, where they are not the point."""
     return call("design", *arguments, "--no-verify")
-
-
-def error_of(result: Result) -> str:
-    """The one line that says what is wrong."""
-    lines = [line for line in result.stderr.splitlines() if line.startswith("error: ")]
-    assert len(lines) == 1, result.stderr
-    assert "Traceback" not in result.stderr
-    return lines[0]
 
 
 def picture(path: Path, *, blank: bool = False, **save: object) -> Path:

@@ -9,27 +9,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner, Result
 
 from fem.solve import solve
 from formula.files import campaign_of, load_formula, read_bytes
 from formula.theta import theta_deg
-from profiletool.cli import app
 from profiletool.records import Material
 from profiletool.verify import joint_actuator
+from tests.calls import call, error_of
 
 SMALL = ("--alpha", "84,120,156", "--openF", "8,12", "--max-pressure", "0.4", "--workers", "1")
-
-
-def call(*arguments: object) -> Result:
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
-
-
-def error_of(result: Result) -> str:
-    lines = [line for line in result.stderr.splitlines() if line.startswith("error: ")]
-    assert len(lines) == 1, result.stderr
-    assert "Traceback" not in result.stderr
-    return lines[0]
 
 
 @pytest.fixture(autouse=True)
@@ -135,7 +123,7 @@ def test_rubbers_are_listed() -> None:
         (("--rubber", "mooney-rivlin:0.1,0.1,0.6"), 2, "nu"),
         (("--alpha", "84,x"), 2, "--alpha"),
         (("--alpha", "-5,84"), 2, "--alpha"),
-        (("--openF", "70"), 2, ""),
+        (("--openF", "70"), 2, "joint 1 reaches beyond the clamped end"),
         (("--wall", "12"), 2, "wall"),
         (("--max-pressure", "0"), 2, "--max-pressure"),
         (("--workers", "0"), 2, "--workers"),

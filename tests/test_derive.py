@@ -14,8 +14,9 @@ from fem.material import PAPER_RUBBER, MooneyRivlin
 from formula.files import load_formula, parse_formula
 from formula.theta import theta_deg
 from profiletool.campaign.runs import Outcome, Task
-from profiletool.derive import Base, Plan, check_plan, derive, formula_file, load_base, similar
+from profiletool.derive import Base, Plan, check_plan, derive, load_base, similar
 from profiletool.errors import NotVerified, UnreadableInput, UsageError
+from profiletool.formulafile import formula_file
 from profiletool.report.derivation import derivation_files, derivation_text
 from profiletool.rubber import PRESETS, Rubber
 

@@ -12,7 +12,7 @@ import pytest
 import fem.solve
 from fem.errors import NotConverged
 from fem.material import PAPER_RUBBER
-from formula.theta import Rubber
+from formula.theta import RubberLaw
 from profiletool import verify
 from profiletool.designfile import load_design, to_json
 from profiletool.errors import UnreadableInput
@@ -228,7 +228,7 @@ def test_the_tube_is_of_its_own_rubber(samples: Path, tmp_path: Path) -> None:
     plain = short(samples)
     assert plain.tube.rubber is None
     assert verify.actuator_of(plain).rubber == PAPER_RUBBER
-    stiff = Rubber("stiff", 0.1388, 0.1256, 6.434)
+    stiff = RubberLaw("stiff", 0.1388, 0.1256, 6.434)
     design = replace(plain, tube=replace(plain.tube, rubber=stiff))
     (tmp_path / "design.json").write_text(to_json(design))
     read = load_design(tmp_path / "design.json")

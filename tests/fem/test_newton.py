@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -93,19 +95,11 @@ def test_a_state_that_jumps_is_not_taken_for_the_path(monkeypatch: pytest.Monkey
     chart = Chart(system.mesh)
     path = Path(system, chart, Options())
     states = list(path.follow([0.02, 0.04]))
-    # As if nothing were known between 0.4 bar and a much higher pressure's energy.
     assert path._settle(0.0401, asked=True) is not None
     last = path._known[-1]
-    lifted = last.forces.__class__(
-        last.forces.internal,
-        last.forces.volume_gradient,
-        last.forces.energy * 1.01,
-        last.forces.volume,
-        last.forces.least_J,
-    )
-    monkeypatch.setattr(path, "_known", [*states, last.__class__(
-        last.pressure, last.pose, lifted, last.compliance, last.residual, True, 0
-    )])  # fmt: skip
+    # As if the last state held more energy than the one that it settles into can have left.
+    lifted = replace(last.forces, energy=1.01 * last.forces.energy)
+    monkeypatch.setattr(path, "_known", [*states, replace(last, forces=lifted)])
     assert path._settle(0.0402, asked=True) is None
     assert path.history[-1].outcome == "unstable"
 

@@ -135,6 +135,15 @@ def test_formulas_that_come_along_go_by_their_names(tmp_path: Path) -> None:
         load_formula(Path("unknown"))
 
 
+def test_a_file_called_paper_is_not_the_default(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "paper").write_text(json.dumps({**FILE, "name": "mine"}))
+    monkeypatch.chdir(tmp_path)
+    assert load_formula(Path("paper")).name == "mine"
+    assert load_formula() == PAPER
+
+
 def test_a_campaign_reads_back() -> None:
     campaign = {
         "alpha_closed_deg": [84, 120],
