@@ -104,8 +104,8 @@ def formula_marks(design: Design) -> tuple[Mark, ...]:
 
 def template_files(design: Design) -> dict[str, bytes]:
     """Draw the cut template of a design."""
-    sheet = build_sheet(design)
-    return {"template.dxf": write_dxf(sheet), "template.svg": write_svg(sheet).encode()}
+    drawing = build_sheet(design).drawing
+    return {"template.dxf": write_dxf(drawing), "template.svg": write_svg(drawing).encode()}
 
 
 def scene_of(result: Result) -> Scene:

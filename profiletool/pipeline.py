@@ -55,13 +55,14 @@ DEPTH_MM = 1.0  # a tube that presses deeper into the object is warned of
 
 @dataclass(frozen=True)
 class Result:
-    """A design with what it was made from.
+    """A design with what it was made from, and what was asked for.
 
     ``reasons`` say why it is infeasible; none where it is feasible. ``shape`` is the tube as the
     formula bends it. ``check`` is its finite-element run; None where none was asked for.
     ``misses`` are the stretches of the profile that the shape is far off.
     """
 
+    request: Request
     design: Design
     reasons: tuple[str, ...]
     subject: Subject
@@ -115,7 +116,7 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
     if checked is not None and checked.run is not None and checked.shape is not None:
         design = replace(design, sensitivity=sensitivity_of(design, checked.run, profile))
     design = replace(design, feasible=not reasons, warnings=tuple(notes))
-    return Result(design, reasons, subject, plan, shape, checked, places)
+    return Result(request, design, reasons, subject, plan, shape, checked, places)
 
 
 @dataclass(frozen=True)

@@ -1,35 +1,38 @@
-"""The sheet as DXF R2000 in mm."""
+"""Drawings as DXF in mm: R2000, or R12 for machines that read nothing newer."""
 
 from __future__ import annotations
 
 import io
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Literal
 
 from ezdxf import options, units  # type: ignore[attr-defined]
 from ezdxf.filemanagement import new
 
-from profiletool.template.sheet import COLOURS, Sheet
+from profiletool.template.drawing import COLOURS, Drawing
+
+Version = Literal["R2000", "R12"]
 
 
-def write_dxf(sheet: Sheet) -> bytes:
-    """Return the bytes of a DXF file of ``sheet``.
+def write_dxf(drawing: Drawing, version: Version = "R2000") -> bytes:
+    """Return the bytes of a DXF file of ``drawing``.
 
-    Every line is an LWPOLYLINE on its layer, the outline a closed one. The same sheet gives the
-    same bytes: times and identifiers are fixed.
+    Every line is an LWPOLYLINE on its layer (R12: a POLYLINE), closed contours closed ones. R12
+    knows no units: the reader must be told mm. The same drawing gives the same bytes: times and
+    identifiers are fixed.
     """
     with _fixed_metadata():
-        doc = new("R2000", units=units.MM)
+        doc = new(version, units=units.MM)
         # ezdxf takes the unit of length along, but leaves the measurement system to the caller.
         doc.header["$MEASUREMENT"] = 1
         modelspace = doc.modelspace()
-        for layer in sheet.layers:
+        add = modelspace.add_polyline2d if version == "R12" else modelspace.add_lwpolyline
+        for layer in drawing.layers:
             doc.layers.add(layer.name, color=COLOURS[layer.name][0])
             for line in layer.lines:
-                modelspace.add_lwpolyline(
-                    line.tolist(), close=layer.closed, dxfattribs={"layer": layer.name}
-                )
-        x0, y0, x1, y1 = sheet.bounds
+                add(line.points.tolist(), close=line.closed, dxfattribs={"layer": layer.name})
+        x0, y0, x1, y1 = drawing.bounds
         modelspace.reset_extents((x0, y0, 0), (x1, y1, 0))
         modelspace.reset_limits((x0, y0), (x1, y1))
         doc.set_modelspace_vport(

@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from profiletool.records import Design, FloatArray, Joint
-from profiletool.template.sheet import Box, Line, Text
+from profiletool.template.drawing import Box, Line, Text
 from profiletool.template.unroll import FULL_CIRCLE, Slit, roll_of, window_intervals
 
 # Ways to write a label: height of the number, of openF/alpha, and where the latter stands. The

@@ -4,23 +4,31 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from profiletool.records import Design, FloatArray, Joint
+from profiletool.template.drawing import Box, Drawing, Line, Text, arrow, polyline
 from profiletool.template.labels import joint_labels, margin_numbers
 from profiletool.template.notes import (
     LEGEND_GAP_MM,
-    arrow,
     end_view,
     legend,
     reference,
     title_block,
     title_of,
 )
-from profiletool.template.sheet import Box, Line, Sheet, Text
-from profiletool.template.unroll import FULL_CIRCLE, roll_of, seam_at, sheet_size, slits
+from profiletool.template.unroll import (
+    FULL_CIRCLE,
+    SeamChoice,
+    Slit,
+    roll_of,
+    seam_at,
+    sheet_size,
+    slits,
+)
 
 NOTCH_MM = 3.0
 LEAST_NOTCH_MM = 0.5
@@ -34,6 +42,30 @@ STEP_MM = 2.5
 BLOCK_MM = 6.0
 THREADS_MM = 2.5
 Drawn = tuple[Sequence[Line], Sequence[Text]]
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A cut template: x along the tube, y up along the roll.
+
+    Attributes
+    ----------
+    drawing : Drawing
+        All of it; its CUT_INNER lines are the slits, joint by joint, row by row, along the roll.
+    size_mm : (float, float)
+        The piece of gauze: along the tube, along the roll.
+    outline : (N, 2) float
+        Its closed outline, first point not repeated, counter-clockwise.
+    slits : tuple of Slit
+    seam : SeamChoice
+        The weld line and what it crosses.
+    """
+
+    drawing: Drawing
+    size_mm: tuple[float, float]
+    outline: FloatArray
+    slits: tuple[Slit, ...]
+    seam: SeamChoice
 
 
 def build_sheet(design: Design) -> Sheet:
@@ -69,15 +101,13 @@ def build_sheet(design: Design) -> Sheet:
         *(text for _, some in parts for text in some),
         *title_block(design, size, seam, (-LEFT_MM, right, size[1] + edge + BLOCK_MM)),
     )
-    return Sheet(
-        title=title_of(design),
-        size_mm=size,
-        outline=_outline(size, notch),
-        slits=cuts,
-        drawn=tuple(line for some, _ in parts for line in some),
-        texts=texts,
-        seam=seam,
+    outline = _outline(size, notch)
+    drawn = (
+        Line("CUT_OUTER", outline, closed=True),
+        *(polyline("CUT_INNER", (s.x_mm, s.y_start_mm), (s.x_mm, s.y_end_mm)) for s in cuts),
+        *(line for some, _ in parts for line in some),
     )
+    return Sheet(Drawing(title_of(design), drawn, texts), size, outline, cuts, seam)
 
 
 def _notch(joints: Sequence[Joint], length: float) -> Box | None:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import PurePath
 
 import numpy as np
 
-from profiletool.records import TOWARD_DEG, Design, FloatArray
+from profiletool.records import TOWARD_DEG, Design
+from profiletool.template.drawing import Box, Line, Text, arrow, circle, polyline, wrapped
 from profiletool.template.labels import short
-from profiletool.template.sheet import Box, LayerName, Line, Text
 from profiletool.template.strokes import text_width
 from profiletool.template.unroll import SeamChoice, off_mesh, slit_rows
 
@@ -21,7 +21,6 @@ END_VIEW_RADIUS_MM = 11.0
 LEGEND_GAP_MM = 6.0
 LEGEND_MM = 130.0
 NAME_MM = 100.0
-FLATTENING_MM = 0.01
 
 STEPS = (
     "1 Plot at 100 %. Measure bar and box.",
@@ -54,12 +53,10 @@ def title_block(
     left, right, bottom = frame
     name, *alarms = _title_lines(design)
     rows = [(name, TITLE_MM), *((text, ALARM_MM) for text in alarms)]
-    facts = [
-        text for text in _facts(design, size) for text in _wrapped(text, BODY_MM, right - left)
-    ]
+    facts = [text for text in _facts(design, size) for text in wrapped(text, BODY_MM, right - left)]
     rows += [(text, BODY_MM) for text in facts]
     for warning in _warnings(design, seam):
-        rows += [(text, BODY_MM) for text in _wrapped(warning, BODY_MM, right - left)]
+        rows += [(text, BODY_MM) for text in wrapped(warning, BODY_MM, right - left)]
     texts: list[Text] = []
     y, below = bottom, 0.0
     for text, height in reversed(rows):
@@ -72,15 +69,15 @@ def title_block(
 def reference(left: float, top: float) -> tuple[tuple[Line, ...], tuple[Text, ...], Box]:
     """Return the 100 mm bar and the 50 x 100 mm check box below ``top``, and the box's place."""
     y = top - 3.0
-    lines = [_line("REF", (left, y), (left + BAR_MM, y))]
+    lines = [polyline("REF", (left, y), (left + BAR_MM, y))]
     for k in range(11):
         length = 3.0 if k % 5 == 0 else 1.5
-        lines.append(_line("REF", (left + 10 * k, y + length), (left + 10 * k, y)))
+        lines.append(polyline("REF", (left + 10 * k, y + length), (left + 10 * k, y)))
     texts = [Text("REF", "100 mm", left + BAR_MM / 2, y - 4.5, BODY_MM, "centre")]
     width, height = CHECK_BOX_MM
     box = (left, y - 8.0 - height, left + width, y - 8.0)
     x0, y0, x1, y1 = box
-    lines.append(_line("REF", (x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)))
+    lines.append(Line("REF", np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]), closed=True))
     middle = (x0 + x1) / 2, (y0 + y1) / 2
     texts.append(Text("REF", "check box 50 x 100 mm", middle[0], middle[1], BODY_MM, "centre"))
     texts.append(
@@ -100,7 +97,7 @@ def legend(design: Design, left: float, right: float, top: float) -> tuple[Text,
     y = top
     for step in (*STEPS, *KEY):
         indent = 0.0 if step in KEY else hang
-        rows = _wrapped(step.format(seam=seam, times=times), SMALL_MM, width - indent)
+        rows = wrapped(step.format(seam=seam, times=times), SMALL_MM, width - indent)
         for k, row in enumerate(rows):
             y -= SMALL_MM * LINE_SPACING if texts else SMALL_MM
             texts.append(Text("NOTE", row, left + (indent if k else 0.0), y, SMALL_MM))
@@ -111,14 +108,11 @@ def legend(design: Design, left: float, right: float, top: float) -> tuple[Text,
 def end_view(seam_deg: float, x: float, y: float) -> tuple[tuple[Line, ...], tuple[Text, ...]]:
     """Return the tube's end view, centred on (x, y): seam, gauze before rolling, object side."""
     r = END_VIEW_RADIUS_MM
-    step = 2 * np.arccos(1 - FLATTENING_MM / r)
-    around = np.linspace(0.0, 2 * np.pi, int(np.ceil(2 * np.pi / step)) + 1)
-    circle = np.stack([x + r * np.cos(around), y + r * np.sin(around)], axis=1)
     radial = np.array([np.cos(np.radians(seam_deg)), np.sin(np.radians(seam_deg))])
     along = np.array([-radial[1], radial[0]])
     foot = np.array([x, y]) + r * radial
     lines = [
-        Line("NOTE", circle),
+        circle("NOTE", x, y, r),
         Line("NOTE", np.array([foot - 2.5 * radial, foot])),
         *arrow("NOTE", foot, foot + 9.0 * along),
     ]
@@ -128,21 +122,6 @@ def end_view(seam_deg: float, x: float, y: float) -> tuple[tuple[Line, ...], tup
         Text("NOTE", "seen from closed end", x, y - r - 13.0, SMALL_MM, "centre"),
     )
     return tuple(lines), texts
-
-
-def arrow(
-    layer: LayerName, start: FloatArray, end: FloatArray, both: bool = False, head: float = 2.5
-) -> tuple[Line, ...]:
-    """Return a shaft from ``start`` to ``end`` (2,) mm with an open head, or one at both ends."""
-    along = (end - start) / np.hypot(*(end - start))
-    across = np.array([-along[1], along[0]])
-    lines = [Line(layer, np.array([start, end]))]
-    for tip, sign in ((end, 1), (start, -1))[: 2 if both else 1]:
-        back = tip - sign * head * along
-        lines.append(
-            Line(layer, np.array([back + head / 3 * across, tip, back - head / 3 * across]))
-        )
-    return tuple(lines)
 
 
 def _title_lines(design: Design) -> list[str]:
@@ -200,17 +179,6 @@ def _named(numbers: Sequence[int]) -> str:
     return f"Joint{'s' if len(numbers) > 1 else ''} {', '.join(map(str, numbers))}"
 
 
-def _wrapped(text: str, height: float, width: float) -> list[str]:
-    """Break ``text`` into lines no wider than ``width``; a longer word stays whole."""
-    rows: list[str] = []
-    for word in text.split(" "):
-        if rows and text_width(f"{rows[-1]} {word}", height) <= width:
-            rows[-1] += f" {word}"
-        else:
-            rows.append(word)
-    return rows
-
-
 def _shortened(text: str, height: float, width: float) -> str:
     """Cut ``text`` down to ``width``, with dots in place of its middle."""
     keep = len(text)
@@ -219,7 +187,3 @@ def _shortened(text: str, height: float, width: float) -> str:
         keep -= 1
         fitting = f"{text[: keep - keep // 2]}...{text[len(text) - keep // 2 :]}"
     return fitting
-
-
-def _line(layer: LayerName, *points: Iterable[float]) -> Line:
-    return Line(layer, np.array([[*point] for point in points]))

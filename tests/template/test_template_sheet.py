@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import LineString, Polygon, STRtree, box, linestrings
 
+from profiletool.template.drawing import Text
 from profiletool.template.layout import build_sheet
-from profiletool.template.sheet import Text
 from profiletool.template.strokes import GLYPHS, text_strokes, text_width
 from profiletool.template.unroll import best_seam
 from tests.template.designs import bulb, design_of, joint, long_tube, short_tube, skew
@@ -26,9 +26,9 @@ def tight():
 
 def segments(sheet):
     """All segments of all layers, (N, 2 ends, 2)."""
-    closed = [np.vstack([p, p[:1]]) for layer in sheet.layers if layer.closed for p in layer.lines]
-    lines = [line for layer in sheet.layers if not layer.closed for line in layer.lines]
-    return np.vstack([np.stack([line[:-1], line[1:]], axis=1) for line in closed + lines])
+    lines = [line for layer in sheet.drawing.layers for line in layer.lines]
+    points = [np.vstack([p.points, p.points[:1]]) if p.closed else p.points for p in lines]
+    return np.vstack([np.stack([line[:-1], line[1:]], axis=1) for line in points])
 
 
 def coincident(found, near=1e-5):
@@ -85,10 +85,10 @@ def test_outline_is_the_sheet_with_a_notch_in_the_root(build):
 def test_lettering_stands_clear(build):
     """No text meets another one, a slit, the outline or any other line."""
     sheet = build_sheet(build())
-    boxes = [box(*text.box) for text in sheet.texts]
+    boxes = [box(*text.box) for text in sheet.drawing.texts]
     assert [(a, b) for a, b in combinations(boxes, 2) if a.intersects(b)] == []
-    others = [LineString(line.points) for line in sheet.drawn if len(line.points) < 10]
-    cuts = [line for layer in sheet.layers[:2] for line in layer.lines]
+    others = [LineString(line.points) for line in sheet.drawing.drawn if len(line.points) < 10]
+    cuts = [line.points for layer in sheet.drawing.layers[:2] for line in layer.lines]
     others += [LineString(np.vstack([line, line[:1]])) for line in cuts]
     tree = STRtree(others)
     assert tree.query([b.buffer(0.2) for b in boxes], predicate="intersects").size == 0
@@ -100,20 +100,20 @@ def test_every_joint_is_named_on_every_turn(build):
     sheet = build_sheet(design)
     middle = sheet.size_mm[1] / 2
     for j in design.joints:
-        own = [t for t in sheet.texts if t.text == str(j.number) and t.layer == "MARK"]
+        own = [t for t in sheet.drawing.texts if t.text == str(j.number) and t.layer == "MARK"]
         inside = [t for t in own if 0 < t.y < sheet.size_mm[1]]
         assert len(own) == 4
         assert [t.y > middle for t in inside] == [False, True]
         assert all(abs(np.mean(t.box[::2]) - j.centre_mm) < 8 for t in inside)
         small = f"{j.openF_mm:g}/{j.alpha_closed_deg:g}°"
-        assert sum(t.text == small for t in sheet.texts) >= 2
-    assert min(text.height for text in sheet.texts) >= 2.5
+        assert sum(t.text == small for t in sheet.drawing.texts) >= 2
+    assert min(text.height for text in sheet.drawing.texts) >= 2.5
 
 
 def test_register_line_is_one_turn_before_the_end_and_open_at_the_crossing():
     sheet = build_sheet(bulb())
     y = 2 * np.pi * 10.25
-    pieces = [line.points for line in sheet.drawn if np.allclose(line.points[:, 1], y)]
+    pieces = [line.points for line in sheet.drawing.drawn if np.allclose(line.points[:, 1], y)]
     inside = [p for p in pieces if p[:, 0].max() < 103]
     assert len(inside) == 2
     cut = [slit.x_mm for slit in sheet.slits if slit.joint == 6]
@@ -122,7 +122,7 @@ def test_register_line_is_one_turn_before_the_end_and_open_at_the_crossing():
 
 
 def said(design):
-    return " ".join(text.text for text in build_sheet(design).texts)
+    return " ".join(text.text for text in build_sheet(design).drawing.texts)
 
 
 def test_sheet_says_what_is_wrong():
@@ -135,7 +135,7 @@ def test_sheet_says_what_is_wrong():
     assert "Joint 12: rows beyond" in bad
     assert "Joint 6: cut crosses the weld line" in said(bulb())
     assert "NOT VERIFIED" not in said(bulb())
-    assert build_sheet(tight()).title.endswith("INFEASIBLE - NOT VERIFIED")
+    assert build_sheet(tight()).drawing.title.endswith("INFEASIBLE - NOT VERIFIED")
     assert "only 1.2 mm from the weld line" in said(skew())
 
 
@@ -149,7 +149,7 @@ def test_other_turns(turns):
     design = replace(bulb(), gauze=replace(bulb().gauze, turns=turns))
     sheet = build_sheet(design)
     assert coincident(segments(sheet)) == []
-    assert any("Register" in text.text for text in sheet.texts) == (turns > 1)
+    assert any("Register" in text.text for text in sheet.drawing.texts) == (turns > 1)
 
 
 @settings(max_examples=15, deadline=None)
@@ -173,7 +173,7 @@ def test_any_design_gives_a_clean_sheet(rows):
     sheet = build_sheet(design_of(joints, at))
     assert sheet.seam == best_seam(joints)
     piece = Polygon(sheet.outline).buffer(1e-9)
-    assert all(piece.covers(LineString(line)) for line in sheet.layers[1].lines)
+    assert all(piece.covers(LineString(line.points)) for line in sheet.drawing.layers[1].lines)
     assert coincident(segments(sheet)) == []
 
 

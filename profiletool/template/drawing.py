@@ -1,15 +1,15 @@
-"""What both writers draw: plain polylines on layers, mm, x along the tube, y up along the roll."""
+"""What the writers draw: plain polylines on layers, mm, y up."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from profiletool.records import FloatArray
 from profiletool.template.strokes import text_strokes, text_width
-from profiletool.template.unroll import SeamChoice, Slit
 
 LayerName = Literal["CUT_OUTER", "CUT_INNER", "MARK", "NOTE", "REF"]
 Anchor = Literal["left", "centre", "right"]
@@ -25,6 +25,8 @@ COLOURS: dict[LayerName, tuple[int, str]] = {
 }
 # Coordinates end at a nanometre: the last bits of a sum are not the same on every machine.
 DECIMALS = 6
+# Curves are drawn as chords that lie off them by no more than this.
+FLATTENING_MM = 0.01
 
 
 @dataclass(frozen=True)
@@ -83,73 +85,95 @@ class Text:
 
 @dataclass(frozen=True)
 class Line:
-    """An open polyline on a layer: ``points`` (N, 2) mm."""
+    """A polyline on a layer: ``points`` (N, 2) mm; a closed one does not repeat a point."""
 
     layer: LayerName
     points: FloatArray
-
-
-@dataclass(frozen=True)
-class Layer:
-    """The polylines of one layer, (N, 2) mm each; ``closed`` ones do not repeat a point."""
-
-    name: LayerName
-    lines: tuple[FloatArray, ...]
     closed: bool = False
 
 
 @dataclass(frozen=True)
-class Sheet:
-    """A cut template.
+class Layer:
+    """The polylines of one layer."""
+
+    name: LayerName
+    lines: tuple[Line, ...]
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """What the writers write: polylines and lettering, mm, y up.
 
     Attributes
     ----------
     title : str
-        What it is a template of.
-    size_mm : (float, float)
-        The piece of gauze: along the tube, along the roll.
-    outline : (N, 2) float
-        Its closed outline, first point not repeated, counter-clockwise.
-    slits : tuple of Slit
-        Joint by joint, row by row, along the roll.
     drawn : tuple of Line
-        What is drawn on MARK, NOTE and REF other than lettering.
+        On each layer in the order to draw them.
     texts : tuple of Text
-        The lettering.
-    seam : SeamChoice
-        The weld line and what it crosses.
     """
 
     title: str
-    size_mm: tuple[float, float]
-    outline: FloatArray
-    slits: tuple[Slit, ...]
     drawn: tuple[Line, ...]
     texts: tuple[Text, ...]
-    seam: SeamChoice
 
     @property
     def layers(self) -> tuple[Layer, ...]:
-        """All that is to be drawn, layer by layer, in the order to draw it."""
-        cuts = tuple(np.array([[s.x_mm, s.y_start_mm], [s.x_mm, s.y_end_mm]]) for s in self.slits)
-        found: dict[LayerName, list[FloatArray]] = {name: [] for name in COLOURS}
-        found["CUT_OUTER"].append(self.outline)
-        found["CUT_INNER"].extend(cuts)
+        """All that is to be drawn, lettering as strokes, layer by layer, in the order to draw."""
+        found: dict[LayerName, list[Line]] = {name: [] for name in COLOURS}
         for line in self.drawn:
-            found[line.layer].append(line.points)
+            found[line.layer].append(line)
         for text in self.texts:
-            found[text.layer].extend(text.lines())
+            found[text.layer].extend(Line(text.layer, stroke) for stroke in text.lines())
         return tuple(
-            Layer(name, tuple(_rounded(line) for line in found[name]), name == "CUT_OUTER")
-            for name in COLOURS
+            Layer(name, tuple(replace(line, points=_rounded(line.points)) for line in lines))
+            for name, lines in found.items()
         )
 
     @property
     def bounds(self) -> Box:
         """The extent of everything drawn: x min, y min, x max, y max, mm."""
-        points = np.concatenate([line for layer in self.layers for line in layer.lines])
+        points = np.concatenate([line.points for layer in self.layers for line in layer.lines])
         (x0, y0), (x1, y1) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
         return x0, y0, x1, y1
+
+
+def arrow(
+    layer: LayerName, start: FloatArray, end: FloatArray, both: bool = False, head: float = 2.5
+) -> tuple[Line, ...]:
+    """Return a shaft from ``start`` to ``end`` (2,) mm with an open head, or one at both ends."""
+    along = (end - start) / np.hypot(*(end - start))
+    across = np.array([-along[1], along[0]])
+    lines = [Line(layer, np.array([start, end]))]
+    for tip, sign in ((end, 1), (start, -1))[: 2 if both else 1]:
+        back = tip - sign * head * along
+        lines.append(
+            Line(layer, np.array([back + head / 3 * across, tip, back - head / 3 * across]))
+        )
+    return tuple(lines)
+
+
+def polyline(layer: LayerName, *points: Sequence[float]) -> Line:
+    """Return an open line through ``points``, (x, y) mm each."""
+    return Line(layer, np.array(points, dtype=float))
+
+
+def circle(layer: LayerName, x: float, y: float, radius: float) -> Line:
+    """Return a closed circle, flat to `FLATTENING_MM`."""
+    step = 2 * np.arccos(1 - FLATTENING_MM / radius)
+    around = np.linspace(0.0, 2 * np.pi, int(np.ceil(2 * np.pi / step)), endpoint=False)
+    ring = np.stack([x + radius * np.cos(around), y + radius * np.sin(around)], axis=1)
+    return Line(layer, ring, closed=True)
+
+
+def wrapped(text: str, height: float, width: float) -> list[str]:
+    """Break ``text`` into lines no wider than ``width``; a longer word stays whole."""
+    rows: list[str] = []
+    for word in text.split(" "):
+        if rows and text_width(f"{rows[-1]} {word}", height) <= width:
+            rows[-1] += f" {word}"
+        else:
+            rows.append(word)
+    return rows
 
 
 def _rounded(line: FloatArray) -> FloatArray:
