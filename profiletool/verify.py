@@ -37,8 +37,7 @@ from profiletool.records import Gauze as DesignGauze
 from profiletool.records import Tube as DesignTube
 from profiletool.rubber import law_of
 
-STEPS = 10  # pressures that are reported where nothing else is asked for,
-CHECK_STEPS = 5  # and where a design is checked
+STEPS = 10  # pressures that are reported where nothing else is asked for
 DECIMALS = 4  # of what FE puts into design.json: far above the noise of the last bits
 LYING = Pose(0.0, 0.0, 0.0)  # an actuator without an object lies along x ...
 DOWN = -1.0  # ... and bends down
@@ -81,12 +80,10 @@ class Check:
         return self.run.verification.last.shape if done and self.run is not None else None
 
 
-def pressures_to(
-    pressure_bar: float, step_bar: float | None = None, steps: int = STEPS
-) -> tuple[float, ...]:
-    """Give the pressures up to one, bar: so many equal steps, or steps of a given size."""
+def pressures_to(pressure_bar: float, step_bar: float | None = None) -> tuple[float, ...]:
+    """Give the pressures up to one, bar: `STEPS` equal steps, or steps of a given size."""
     if step_bar is None:
-        return tuple(pressure_bar * (k + 1) / steps for k in range(steps))
+        return tuple(pressure_bar * (k + 1) / STEPS for k in range(STEPS))
     count = int(np.ceil(pressure_bar / step_bar - 1e-9))
     return (*(round(step_bar * k, 9) for k in range(1, count)), pressure_bar)
 
@@ -221,9 +218,7 @@ def inflate(
     )
 
 
-def run_design(
-    design: Design, pressure_bar: float, progress: Progress | None = None, steps: int = STEPS
-) -> Run:
+def run_design(design: Design, pressure_bar: float, progress: Progress | None = None) -> Run:
     """Run a design up to a pressure, in its own base pose.
 
     Raises
@@ -232,7 +227,7 @@ def run_design(
     """
     return inflate(
         actuator_of(design),
-        pressures_to(pressure_bar, steps=steps),
+        pressures_to(pressure_bar),
         design.base_pose,
         side_sign(design.source.side),
         thread_pitch_mm=design.gauze.pitch_mm / design.gauze.turns,
@@ -243,7 +238,7 @@ def run_design(
 def check(design: Design, profile: Profile, progress: Progress | None = None) -> Check:
     """Verify a design at its operating pressure; a failure leaves it unverified and says why."""
     try:
-        run = run_design(design, design.pressure_bar, progress, CHECK_STEPS)
+        run = run_design(design, design.pressure_bar, progress)
     except NotConverged as error:
         return Check(design, None, shortly(error))
     except BadGeometry as error:

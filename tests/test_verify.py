@@ -199,7 +199,7 @@ def test_a_limit_point_before_the_operating_pressure(
     assert done.shape is None
     assert done.run is not None
     assert not done.run.verification.converged
-    assert len(done.run.verification.states) == verify.CHECK_STEPS - 3
+    assert len(done.run.verification.states) == verify.STEPS - 3
 
 
 def test_a_design_that_cannot_be_modelled(samples: Path, run: verify.Run) -> None:
