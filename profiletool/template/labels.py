@@ -10,7 +10,7 @@ import numpy as np
 
 from profiletool.records import Design, FloatArray, Joint
 from profiletool.template.drawing import Box, Line, Text
-from profiletool.template.unroll import FULL_CIRCLE, Slit, roll_of, window_intervals
+from profiletool.template.unroll import FULL_CIRCLE, Roll, Slit, window_intervals
 
 # Ways to write a label: height of the number, of openF/alpha, and where the latter stands. The
 # first that fits is taken.
@@ -35,13 +35,17 @@ NUMBER_MM = 3.5
 NUMBER_ROWS = 3
 
 
-def joint_labels(design: Design, cuts: Sequence[Slit], taken: Sequence[Box]) -> tuple[Text, ...]:
+def joint_labels(
+    design: Design, roll: Roll, cuts: Sequence[Slit], taken: Sequence[Box]
+) -> tuple[Text, ...]:
     """Return each joint's number, openF and alpha, once per turn, in its uncut sector.
 
     Parameters
     ----------
     design : Design
         The actuator.
+    roll : Roll
+        How the sheet lies around it.
     cuts : sequence of Slit
         All slits of the sheet.
     taken : sequence of Box
@@ -54,13 +58,13 @@ def joint_labels(design: Design, cuts: Sequence[Slit], taken: Sequence[Box]) -> 
     """
     slit_boxes = ((s.x_mm, s.y_start_mm, s.x_mm, s.y_end_mm) for s in cuts)
     barred = np.array([*taken, *slit_boxes]).reshape(-1, 4)
-    turns = range(design.gauze.turns)
+    turns = range(roll.turns)
     texts: list[Text] = []
     for joint in design.joints:
         # The same place on all turns where possible, so that the labels register when rolled.
-        label = _first_clear(_options(design, joint, turns), barred)
+        label = _first_clear(_options(design, joint, roll, turns), barred)
         for turn in turns if not label else ():
-            label += _first_clear(_options(design, joint, [turn]), barred)
+            label += _first_clear(_options(design, joint, roll, [turn]), barred)
         texts += label
         barred = np.array([*barred, *(text.box for text in label)]).reshape(-1, 4)
     return tuple(texts)
@@ -97,10 +101,11 @@ def short(value: float) -> str:
     return f"{round(value, 1):g}"
 
 
-def _options(design: Design, joint: Joint, turns: Sequence[int]) -> Iterator[tuple[Text, ...]]:
+def _options(
+    design: Design, joint: Joint, roll: Roll, turns: Sequence[int]
+) -> Iterator[tuple[Text, ...]]:
     """Yield the ways to label a joint at one place of each of ``turns``, the best first."""
-    roll = roll_of(design.tube, design.gauze)
-    free = [_free_stretches(joint, design.gauze.seam_deg, t, design.gauze.turns) for t in turns]
+    free = [_free_stretches(joint, design.gauze.seam_deg, roll, turn) for turn in turns]
     for style in STYLES:
         for places in zip(*free, strict=False):
             spans = [roll.y_mm(phi) + np.array([CLEAR_MM, -CLEAR_MM]) for phi in places]
@@ -142,10 +147,10 @@ def _first_clear(options: Iterable[tuple[Text, ...]], barred: FloatArray) -> tup
     )
 
 
-def _free_stretches(joint: Joint, seam_deg: float, turn: int, turns: int) -> list[FloatArray]:
+def _free_stretches(joint: Joint, seam_deg: float, roll: Roll, turn: int) -> list[FloatArray]:
     """Return the uncut stretches (phi from, to) of a joint in a turn, the longest first."""
     ends = np.array([turn, turn + 1]) * FULL_CIRCLE
-    cut = window_intervals(joint, seam_deg, turns).clip(*ends)
+    cut = window_intervals(joint, seam_deg, roll).clip(*ends)
     edges = np.concatenate([ends[:1], cut.ravel(), ends[1:]]).reshape(-1, 2)
     return sorted(edges, key=lambda stretch: round(float(stretch[0] - stretch[1]), 6))
 

@@ -8,10 +8,20 @@ from pathlib import PurePath
 import numpy as np
 
 from profiletool.records import TOWARD_DEG, Design
-from profiletool.template.drawing import Box, Line, Text, arrow, circle, polyline, wrapped
+from profiletool.template.drawing import (
+    Box,
+    Drawing,
+    Line,
+    Text,
+    arrow,
+    circle,
+    polyline,
+    wrapped,
+)
+from profiletool.template.kinds import KINDS, Wish
 from profiletool.template.labels import short
 from profiletool.template.strokes import text_width
-from profiletool.template.unroll import SeamChoice, off_mesh, slit_rows
+from profiletool.template.unroll import SeamChoice, off_mesh, sheet_size, slit_rows
 
 TITLE_MM, ALARM_MM, BODY_MM, SMALL_MM = 5.0, 6.0, 3.0, 2.5
 LINE_SPACING = 1.7
@@ -21,42 +31,57 @@ END_VIEW_RADIUS_MM = 11.0
 LEGEND_GAP_MM = 6.0
 LEGEND_MM = 130.0
 NAME_MM = 100.0
+DATE_CHARS = 30
 
-STEPS = (
-    "1 Plot at 100 %. Measure bar and box.",
-    "2 Cut the black outline with its notch.",
-    "3 Cut the blue lines only: they sever the axial threads. Do not remove the windows. "
-    "The hoop threads stay whole.",
-    "4 Lay the sheet this face up, the tube on top. Glue the start edge on the "
-    "tube's {seam}° line.",
-    "5 Roll {times}, tight: the cuts of all turns must lie over each other.",
-    "6 Weld the end edge on the register line.",
-)
 KEY = (
     "Labels: joint, openF in mm / alpha in °.",
     "Green: mark. Red and grey: for reading.",
 )
 
 
-def title_of(design: Design) -> str:
-    """Return the sheet's title: the object's file, and what is wrong with the design."""
-    return " - ".join(_title_lines(design))
+def title_of(design: Design, what: str) -> str:
+    """Return a drawing's title: what it is, the object's file, what is wrong with the design."""
+    return " - ".join(title_lines(design, what))
+
+
+def notes(
+    design: Design,
+    size: tuple[float, float],
+    seam: SeamChoice,
+    wish: Wish,
+    left_out: int,
+    frame: tuple[float, float, float, float],
+) -> Drawing:
+    """Return all that is to be read, not made.
+
+    ``left_out`` is the number of slits that are no longer than the kerf. ``frame`` is (left,
+    right, bottom of the title block, top of what stands below the piece), mm.
+    """
+    left, right, bottom, top = frame
+    kind = KINDS[wish.variant]
+    facts = [*_facts(design, size, wish), *_warnings(design, seam, wish)]
+    if left_out:
+        facts.append(f"! {left_out} slits no longer than the kerf are left out.")
+    titles = title_block(title_lines(design, kind.title), facts, (left, right, bottom))
+    lines, texts, box = reference(left, top)
+    seen, said = end_view(
+        design.gauze.seam_deg, box[2] - 21.0, (box[1] + box[3]) / 2 + 8.0, wish.variant != "gauze"
+    )
+    steps = legend(design, kind.steps, (box[2] + LEGEND_GAP_MM, right, top))
+    return Drawing(title_of(design, kind.title), lines + seen, titles + texts + said + steps)
 
 
 def title_block(
-    design: Design, size: tuple[float, float], seam: SeamChoice, frame: tuple[float, float, float]
+    titles: Sequence[str], facts: Sequence[str], frame: tuple[float, float, float]
 ) -> tuple[Text, ...]:
-    """Return title, data and warnings, stacked upward.
+    """Return title, alarms and facts, stacked upward.
 
     ``frame`` is (left, right, bottom) of the room they have, mm; there is no top.
     """
     left, right, bottom = frame
-    name, *alarms = _title_lines(design)
+    name, *alarms = titles
     rows = [(name, TITLE_MM), *((text, ALARM_MM) for text in alarms)]
-    facts = [text for text in _facts(design, size) for text in wrapped(text, BODY_MM, right - left)]
-    rows += [(text, BODY_MM) for text in facts]
-    for warning in _warnings(design, seam):
-        rows += [(text, BODY_MM) for text in wrapped(warning, BODY_MM, right - left)]
+    rows += [(row, BODY_MM) for text in facts for row in wrapped(text, BODY_MM, right - left)]
     texts: list[Text] = []
     y, below = bottom, 0.0
     for text, height in reversed(rows):
@@ -69,47 +94,65 @@ def title_block(
 def reference(left: float, top: float) -> tuple[tuple[Line, ...], tuple[Text, ...], Box]:
     """Return the 100 mm bar and the 50 x 100 mm check box below ``top``, and the box's place."""
     y = top - 3.0
-    lines = [polyline("REF", (left, y), (left + BAR_MM, y))]
-    for k in range(11):
-        length = 3.0 if k % 5 == 0 else 1.5
-        lines.append(polyline("REF", (left + 10 * k, y + length), (left + 10 * k, y)))
-    texts = [Text("REF", "100 mm", left + BAR_MM / 2, y - 4.5, BODY_MM, "centre")]
+    bar, name = scale_bar(left, y)
+    lines, texts = [*bar], [name]
     width, height = CHECK_BOX_MM
     box = (left, y - 8.0 - height, left + width, y - 8.0)
     x0, y0, x1, y1 = box
     lines.append(Line("REF", np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]), closed=True))
-    middle = (x0 + x1) / 2, (y0 + y1) / 2
-    texts.append(Text("REF", "check box 50 x 100 mm", middle[0], middle[1], BODY_MM, "centre"))
-    texts.append(
-        Text("REF", "measure before cutting", middle[0], middle[1] - 5.5, SMALL_MM, "centre")
-    )
+    x, y = x0 + 29.0, (y0 + y1) / 2  # the other half is left to the end view
+    texts.append(Text("REF", "check box 50 x 100 mm", x, y, BODY_MM, "centre"))
+    texts.append(Text("REF", "measure before cutting", x, y - 5.5, SMALL_MM, "centre"))
     return tuple(lines), tuple(texts), box
 
 
-def legend(design: Design, left: float, right: float, top: float) -> tuple[Text, ...]:
-    """Return the working steps, from ``top`` downward between ``left`` and ``right``."""
+def scale_bar(left: float, y: float) -> tuple[tuple[Line, ...], Text]:
+    """Return the 100 mm bar from (``left``, ``y``) on: its ticks above, its name below."""
+    lines = [polyline("REF", (left, y), (left + BAR_MM, y))]
+    for k in range(11):
+        length = 3.0 if k % 5 == 0 else 1.5
+        lines.append(polyline("REF", (left + 10 * k, y + length), (left + 10 * k, y)))
+    return tuple(lines), Text("REF", "100 mm", left + BAR_MM / 2, y - 4.5, BODY_MM, "centre")
+
+
+def legend(
+    design: Design,
+    steps: Sequence[str],
+    frame: tuple[float, float, float],
+) -> tuple[Text, ...]:
+    """Return the numbered working steps and the key within ``frame`` (left, right, top), mm."""
+    left, right, top = frame
     turns = design.gauze.turns
-    times = {1: "once", 2: "twice"}.get(turns, f"{turns} times")
-    seam = short(design.gauze.seam_deg)
+    filled = {
+        "seam": short(design.gauze.seam_deg),
+        "times": {1: "once", 2: "twice"}.get(turns, f"{turns} times"),
+        "diameter": f"{design.tube.outer_diameter_mm:g}",
+        "size": " x ".join(short(side) for side in sheet_size(design.tube, design.gauze)),
+    }
     width = min(right - left, LEGEND_MM)
     hang = text_width("1 ", SMALL_MM) + SMALL_MM / 4
+    numbered = [f"{n} {step.format(**filled)}" for n, step in enumerate(steps, start=1)]
     texts: list[Text] = []
     y = top
-    for step in (*STEPS, *KEY):
+    for step in (*numbered, *KEY):
         indent = 0.0 if step in KEY else hang
-        rows = wrapped(step.format(seam=seam, times=times), SMALL_MM, width - indent)
-        for k, row in enumerate(rows):
+        for k, row in enumerate(wrapped(step, SMALL_MM, width - indent)):
             y -= SMALL_MM * LINE_SPACING if texts else SMALL_MM
             texts.append(Text("NOTE", row, left + (indent if k else 0.0), y, SMALL_MM))
         y -= SMALL_MM / 4
     return tuple(texts)
 
 
-def end_view(seam_deg: float, x: float, y: float) -> tuple[tuple[Line, ...], tuple[Text, ...]]:
-    """Return the tube's end view, centred on (x, y): seam, gauze before rolling, object side."""
+def end_view(
+    seam_deg: float, x: float, y: float, outside: bool
+) -> tuple[tuple[Line, ...], tuple[Text, ...]]:
+    """Return the tube's end view, centred on (x, y): seam, which way the sheet goes, object side.
+
+    A sheet with its face ``outside`` goes around clockwise.
+    """
     r = END_VIEW_RADIUS_MM
     radial = np.array([np.cos(np.radians(seam_deg)), np.sin(np.radians(seam_deg))])
-    along = np.array([-radial[1], radial[0]])
+    along = np.array([-radial[1], radial[0]]) * (-1.0 if outside else 1.0)
     foot = np.array([x, y]) + r * radial
     lines = [
         circle("NOTE", x, y, r),
@@ -118,16 +161,16 @@ def end_view(seam_deg: float, x: float, y: float) -> tuple[tuple[Line, ...], tup
     ]
     texts = (
         Text("NOTE", f"seam {short(seam_deg)}°", x, y - SMALL_MM / 2, SMALL_MM, "centre"),
-        Text("NOTE", f"object side {short(TOWARD_DEG)}°", x, y - r - 7.5, SMALL_MM, "centre"),
-        Text("NOTE", "seen from closed end", x, y - r - 13.0, SMALL_MM, "centre"),
+        Text("NOTE", f"object side {short(TOWARD_DEG)}°", x, y - r - 7.0, SMALL_MM, "centre"),
+        Text("NOTE", "seen from closed end", x, y - r - 11.5, SMALL_MM, "centre"),
     )
     return tuple(lines), texts
 
 
-def _title_lines(design: Design) -> list[str]:
+def title_lines(design: Design, what: str) -> list[str]:
     """Return the file's name, without characters that no file format takes, and the alarms."""
     name = "".join(char for char in PurePath(design.source.file).name if char.isprintable())
-    lines = [f"Cut template: {_shortened(name, TITLE_MM, NAME_MM)}"]
+    lines = [f"{what}: {_shortened(name, TITLE_MM, NAME_MM)}"]
     if not design.feasible:
         lines.append("INFEASIBLE")
     if not design.verified:
@@ -135,27 +178,39 @@ def _title_lines(design: Design) -> list[str]:
     return lines
 
 
-def _facts(design: Design, size: tuple[float, float]) -> list[str]:
+def _facts(design: Design, size: tuple[float, float], wish: Wish) -> list[str]:
     tube, gauze = design.tube, design.gauze
+    turns = f", turns: {gauze.turns}" if wish.variant == "gauze" else ""
+    date = "".join(char for char in wish.date if char.isprintable())
     return [
         f"Tube D {tube.outer_diameter_mm:g}, wall {tube.wall_mm:g}, length "
         f"{short(tube.length_mm)} mm.  Pressure {design.pressure_bar:.2f} bar.  "
-        f"Joints: {len(design.joints)}.",
-        f"Gauze {short(size[0])} x {short(size[1])} mm, mesh {gauze.pitch_mm:g} mm, thread "
-        f"{gauze.thread_mm:g} mm, turns: {gauze.turns}, seam {short(gauze.seam_deg)}°.  Kerf 0.",
+        f"Joints: {len(design.joints)}." + (f"  {date[:DATE_CHARS]}" if date else ""),
+        f"{KINDS[wish.variant].piece} {short(size[0])} x {short(size[1])} mm, mesh "
+        f"{gauze.pitch_mm:g} mm, thread {gauze.thread_mm:g} mm{turns}, seam "
+        f"{short(gauze.seam_deg)}°.  Kerf {wish.kerf_mm:g}.",
     ]
 
 
-def _warnings(design: Design, seam: SeamChoice) -> list[str]:
+def _warnings(design: Design, seam: SeamChoice, wish: Wish) -> list[str]:
     """Return what needs the bench's attention, a sentence each."""
     warnings = []
     if seam.crossed:
+        crossing = f"! {_named(seam.crossed)}: cut crosses the"
+        if wish.variant == "sleeve":
+            warnings.append(f"{crossing} seam line. Its slits go on from edge to edge.")
+        else:
+            warnings.append(
+                f"{crossing} weld line. Its slits run out of the start and the end edge. Keep "
+                "glue and weld off the slits."
+            )
+    if wish.variant == "sleeve" and design.gauze.turns > 1:
         warnings.append(
-            f"! {_named(seam.crossed)}: cut crosses the weld line. Its slits run out of the start "
-            "and the end edge. Keep glue and weld off the slits."
+            f"! One layer where the design has {design.gauze.turns}: half the stiffness lets a "
+            "joint bend some 2 % more."
         )
     thread_deg = 360.0 * design.gauze.pitch_mm / (np.pi * design.tube.outer_diameter_mm)
-    if seam.margin_deg < thread_deg:
+    if seam.margin_deg < thread_deg and wish.variant != "sleeve":
         gap = seam.margin_deg / thread_deg * design.gauze.pitch_mm
         warnings.append(f"! A cut ends only {short(gap)} mm from the weld line.")
     stray = off_mesh(design.joints, design.gauze)

@@ -4,15 +4,18 @@ Conventions
 -----------
 Angles on the tube count counter-clockwise as seen from the closed end, looking to the clamped
 end; 270 deg faces the object. The sheet lies face up, x along the tube from the clamped end, y
-up along the roll. The tube is laid *on* the face with its seam line on the start edge y = 0 and
-is rolled toward +y, so the face ends up inside, against the tube, and the roll angle
-phi = angle - seam grows from the start edge: 0 .. 360 is the inner turn, 360 .. 720 the second.
+up from the start edge, which lies on the seam.
+
+A sheet of gauze is rolled: the tube is laid *on* the face with its seam line on the start edge
+and rolled toward +y, so the face ends up inside, against the tube, and angles grow with y:
+angle = seam + phi. phi 0 .. 360 is the inner turn, 360 .. 720 the second. A sleeve's pattern and
+a marking strip go once around what is on the tube already, face outside: angle = seam - phi.
 
 Glossary
 --------
 phi : roll angle from the start edge, deg; it keeps counting over all turns
-r : radius of the gauze's middle surface, D/2 + t/2 + t phi / (2 pi), mm
-t : thickness of one layer, the thread's, mm
+r : radius of the sheet's middle surface, mm; gauze: D/2 + t/2 + t phi / (2 pi)
+t : thickness of one layer of gauze, the thread's, mm
 y : arc length along the roll, the integral of r dphi, mm
 """
 
@@ -20,13 +23,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from profiletool.records import TOWARD_DEG, FloatArray, Gauze, Joint, Tube
 
+Variant = Literal["gauze", "sleeve", "strip"]
+
 FULL_CIRCLE = 360.0
+PAPER_MM = 0.1  # thickness of a marking strip
 # Angles closer than this are the same edge; slivers between them are no place for a seam.
 SAME_DEG = 1e-6
 SAME_MM = 1e-6
@@ -34,21 +41,24 @@ SAME_MM = 1e-6
 
 @dataclass(frozen=True)
 class Roll:
-    """The spiral that the gauze forms on the tube.
+    """How a sheet lies around the tube.
 
     Attributes
     ----------
-    diameter_mm : float
-        Outer diameter of the tube.
-    thread_mm : float
-        Thickness of one layer of gauze.
+    start_mm : float
+        Radius of its middle surface at the start edge.
+    rise_mm : float
+        By how much that grows with each turn: one layer where it is rolled up, 0 where it closes.
     turns : int
-        How many times the sheet goes around.
+        How many times it goes around.
+    outside : bool
+        Whether its face lies outside, so that angles fall with y.
     """
 
-    diameter_mm: float
-    thread_mm: float
+    start_mm: float
+    rise_mm: float
     turns: int
+    outside: bool = False
 
     @property
     def length_mm(self) -> float:
@@ -58,15 +68,13 @@ class Roll:
     def y_mm(self, phi_deg: float | FloatArray) -> FloatArray:
         """Arc length along the roll (mm) at the roll angle ``phi_deg``, of the same shape."""
         phi = np.radians(phi_deg)
-        r_start = (self.diameter_mm + self.thread_mm) / 2
-        return np.asarray(phi * (r_start + self.thread_mm * phi / (4 * np.pi)))
+        return np.asarray(phi * (self.start_mm + self.rise_mm * phi / (4 * np.pi)))
 
     def phi_deg(self, y_mm: float | FloatArray) -> FloatArray:
         """Roll angle (deg) at the arc length ``y_mm``, of the same shape: the inverse of y."""
-        r_start = (self.diameter_mm + self.thread_mm) / 2
-        r = np.sqrt(r_start**2 + self.thread_mm * np.asarray(y_mm) / np.pi)
-        # The quadratic's root in the form that also holds for a thread of no thickness.
-        return np.asarray(np.degrees(2 * np.asarray(y_mm) / (r_start + r)))
+        r = np.sqrt(self.start_mm**2 + self.rise_mm * np.asarray(y_mm) / np.pi)
+        # The quadratic's root in the form that also holds where the radius does not grow.
+        return np.asarray(np.degrees(2 * np.asarray(y_mm) / (self.start_mm + r)))
 
 
 @dataclass(frozen=True)
@@ -98,14 +106,23 @@ class Slit:
     y_end_mm: float
 
 
-def roll_of(tube: Tube, gauze: Gauze) -> Roll:
-    """Return the spiral of ``gauze`` around ``tube``."""
-    return Roll(tube.outer_diameter_mm, gauze.thread_mm, gauze.turns)
+def roll_of(tube: Tube, gauze: Gauze, variant: Variant = "gauze") -> Roll:
+    """Return how a sheet lies around ``tube``.
+
+    "gauze" is rolled up around it, "sleeve" closes on it as a single layer, "strip" is paper
+    around all turns of the gauze.
+    """
+    radius, thread = tube.outer_diameter_mm / 2, gauze.thread_mm
+    if variant == "strip":
+        return Roll(radius + gauze.turns * thread + PAPER_MM / 2, 0.0, 1, outside=True)
+    if variant == "sleeve":
+        return Roll(radius + thread / 2, 0.0, 1, outside=True)
+    return Roll(radius + thread / 2, thread, gauze.turns)
 
 
-def sheet_size(tube: Tube, gauze: Gauze) -> tuple[float, float]:
+def sheet_size(tube: Tube, gauze: Gauze, variant: Variant = "gauze") -> tuple[float, float]:
     """Return the sheet's size (along the tube, along the roll) in mm."""
-    return tube.length_mm, roll_of(tube, gauze).length_mm
+    return tube.length_mm, roll_of(tube, gauze, variant).length_mm
 
 
 def cut_sector(joint: Joint) -> tuple[float, float]:
@@ -122,7 +139,7 @@ def cut_sector(joint: Joint) -> tuple[float, float]:
     return start, FULL_CIRCLE - joint.alpha_closed_deg
 
 
-def window_intervals(joint: Joint, seam_deg: float, turns: int) -> FloatArray:
+def window_intervals(joint: Joint, seam_deg: float, roll: Roll) -> FloatArray:
     """Return the cut sector of a joint as intervals of the roll angle.
 
     A cut that runs through the seam is one interval from one turn into the next; its first
@@ -134,11 +151,12 @@ def window_intervals(joint: Joint, seam_deg: float, turns: int) -> FloatArray:
         phi from and to, deg, ascending; empty where nothing is cut.
     """
     start, extent = cut_sector(joint)
+    end = FULL_CIRCLE * roll.turns
     if extent >= FULL_CIRCLE:
-        return np.array([[0.0, FULL_CIRCLE * turns]])
-    first = (start - seam_deg) % FULL_CIRCLE
-    begins = first + FULL_CIRCLE * np.arange(-1, turns)
-    pieces = np.stack([begins, begins + extent], axis=1).clip(0.0, FULL_CIRCLE * turns)
+        return np.array([[0.0, end]])
+    ahead = seam_deg - (start + extent) if roll.outside else start - seam_deg
+    begins = ahead % FULL_CIRCLE + FULL_CIRCLE * np.arange(-1, roll.turns)
+    pieces = np.stack([begins, begins + extent], axis=1).clip(0.0, end)
     return np.asarray(pieces[pieces[:, 1] - pieces[:, 0] > SAME_DEG])
 
 
@@ -156,16 +174,18 @@ def slit_rows(joint: Joint, pitch_mm: float) -> FloatArray:
     return np.asarray(joint.centre_mm + (np.arange(n) - (n - 1) / 2) * pitch_mm)
 
 
-def slits(joints: Sequence[Joint], tube: Tube, gauze: Gauze) -> tuple[Slit, ...]:
+def slits(
+    joints: Sequence[Joint], tube: Tube, gauze: Gauze, variant: Variant = "gauze"
+) -> tuple[Slit, ...]:
     """Return all slits of a sheet, joint by joint, row by row, along the roll.
 
     Rows beyond the tube's ends are left out. Slits of different joints that lie on one row and
     touch or overlap become one, which counts to the joint that comes first.
     """
-    roll = roll_of(tube, gauze)
+    roll = roll_of(tube, gauze, variant)
     rows: dict[float, list[tuple[float, float, int]]] = {}
     for order, joint in enumerate(joints):
-        windows = window_intervals(joint, gauze.seam_deg, gauze.turns).tolist()
+        windows = window_intervals(joint, gauze.seam_deg, roll).tolist()
         for x in slit_rows(joint, gauze.pitch_mm).tolist():
             if SAME_MM < x < tube.length_mm - SAME_MM:
                 rows.setdefault(round(x, 6), []).extend((a, b, order) for a, b in windows)

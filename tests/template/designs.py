@@ -84,3 +84,9 @@ def skew() -> Design:
     """Build three joints that bend out of plane."""
     rows = [(22, 8, 120, 200, 30), (22, 10, 132, 250, 30), (20, 6, 108, 300, 25)]
     return replace(design_of(row_of_joints(rows), 80.0, "handle.dxf"), feasible=False)
+
+
+def tight() -> Design:
+    """Build twelve joints so close that hardly a label fits, one beyond the tube's end."""
+    joints = [joint(k + 1, 7, 6, 84, (270, 90)[k % 2], at=8 + 7 * k) for k in range(12)]
+    return replace(design_of(joints, 84.0, "Röhre ☃ & <co>.png"), feasible=False, verified=False)

@@ -7,44 +7,18 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from shapely import LineString, Polygon, STRtree, box, linestrings
+from shapely import LineString, Polygon, STRtree, box
 
 from profiletool.template.drawing import Text
+from profiletool.template.kinds import KINDS, Wish
 from profiletool.template.layout import build_sheet
 from profiletool.template.strokes import GLYPHS, text_strokes, text_width
 from profiletool.template.unroll import best_seam
-from tests.template.designs import bulb, design_of, joint, long_tube, short_tube, skew
+from tests.template.designs import bulb, design_of, joint, long_tube, short_tube, skew, tight
+from tests.template.geometry import coincident, segments
 
 DESIGNS = [bulb, short_tube, long_tube, skew]
-
-
-def tight():
-    """Twelve joints so close that hardly any label fits, one of them beyond the tube's end."""
-    joints = [joint(k + 1, 7, 6, 84, (270, 90)[k % 2], at=8 + 7 * k) for k in range(12)]
-    return replace(design_of(joints, 84.0, "Röhre ☃ & <co>.png"), feasible=False, verified=False)
-
-
-def segments(sheet):
-    """All segments of all layers, (N, 2 ends, 2)."""
-    lines = [line for layer in sheet.drawing.layers for line in layer.lines]
-    points = [np.vstack([p.points, p.points[:1]]) if p.closed else p.points for p in lines]
-    return np.vstack([np.stack([line[:-1], line[1:]], axis=1) for line in points])
-
-
-def coincident(found, near=1e-5):
-    """Pairs of segments (N, 2, 2) that lie on each other over more than a point."""
-    tree = STRtree(linestrings(found))
-    a, b = tree.query(linestrings(found), predicate="dwithin", distance=near)
-    a, b = a[a < b], b[a < b]
-    start, along = found[a, 0], np.diff(found[a], axis=1)[:, 0]
-    length = np.linalg.norm(along, axis=1)
-    along /= length[:, None]
-    ends = found[b] - start[:, None]
-    aside = np.abs(ends[..., 0] * along[:, None, 1] - ends[..., 1] * along[:, None, 0])
-    reach = np.sort((ends * along[:, None]).sum(axis=2), axis=1)
-    overlap = np.minimum(reach[:, 1], length) - np.maximum(reach[:, 0], 0)
-    bad = (aside.max(axis=1) < near) & (overlap > near)
-    return list(zip(a[bad].tolist(), b[bad].tolist(), strict=True))
+of_all_kinds = pytest.mark.parametrize("wish", [Wish(kind) for kind in KINDS], ids=list(KINDS))
 
 
 def test_coincident_segments_are_seen():
@@ -53,14 +27,16 @@ def test_coincident_segments_are_seen():
     assert coincident(np.array([[(0, 0), (1, 2)], [(-1, -2), (3, 6)]], float)) == [(0, 1)]
 
 
+@of_all_kinds
 @pytest.mark.parametrize("build", [*DESIGNS, tight])
-def test_no_line_is_drawn_twice(build):
-    assert coincident(segments(build_sheet(build()))) == []
+def test_no_line_is_drawn_twice(build, wish):
+    assert coincident(segments(build_sheet(build(), wish))) == []
 
 
+@of_all_kinds
 @pytest.mark.parametrize("build", [*DESIGNS, tight])
-def test_slits_lie_inside_the_outline(build):
-    sheet = build_sheet(build())
+def test_slits_lie_inside_the_outline(build, wish):
+    sheet = build_sheet(build(), wish)
     piece = Polygon(sheet.outline)
     assert piece.is_valid
     assert piece.exterior.is_ccw
@@ -81,10 +57,11 @@ def test_outline_is_the_sheet_with_a_notch_in_the_root(build):
     assert 0 < notch.bounds[0] < notch.bounds[2] < first.centre_mm - first.openF_mm / 2
 
 
+@of_all_kinds
 @pytest.mark.parametrize("build", [*DESIGNS, tight])
-def test_lettering_stands_clear(build):
+def test_lettering_stands_clear(build, wish):
     """No text meets another one, a slit, the outline or any other line."""
-    sheet = build_sheet(build())
+    sheet = build_sheet(build(), wish)
     boxes = [box(*text.box) for text in sheet.drawing.texts]
     assert [(a, b) for a, b in combinations(boxes, 2) if a.intersects(b)] == []
     others = [LineString(line.points) for line in sheet.drawing.drawn if len(line.points) < 10]

@@ -31,6 +31,7 @@ from tests.template.designs import (
 )
 
 DESIGNS = [bulb, short_tube, long_tube, skew]
+TWICE = Roll(10.125, 0.25, 2)
 
 
 @pytest.mark.parametrize(
@@ -43,19 +44,19 @@ DESIGNS = [bulb, short_tube, long_tube, skew]
     ],
 )
 def test_roll_length_closed_form(D, t, turns, length):
-    assert Roll(D, t, turns).length_mm == pytest.approx(length, abs=1e-8)
+    assert Roll((D + t) / 2, t, turns).length_mm == pytest.approx(length, abs=1e-8)
 
 
 def test_length_is_the_integral_of_the_radius():
     phi = np.linspace(0, 720, 200_001)
     r = 10 + 0.125 + 0.25 * np.radians(phi) / (2 * np.pi)
-    assert Roll(20, 0.25, 2).length_mm == pytest.approx(np.trapezoid(r, np.radians(phi)), abs=1e-8)
+    assert TWICE.length_mm == pytest.approx(np.trapezoid(r, np.radians(phi)), abs=1e-8)
 
 
 @settings(deadline=None)
 @given(D=st.floats(5, 60), t=st.floats(0, 1), phi=st.floats(0, 1440), turns=st.integers(1, 4))
 def test_phi_inverts_y(D, t, phi, turns):
-    roll = Roll(D, t, turns)
+    roll = Roll((D + t) / 2, t, turns)
     assert roll.phi_deg(roll.y_mm(phi)) == pytest.approx(phi, abs=1e-9)
 
 
@@ -101,7 +102,7 @@ def test_windows_roll_back_onto_their_angles(build):
 def test_cut_covers_what_is_not_uncut(turns, alpha, center, seam, fraction):
     """On every turn a point of the sheet is in a window just where its angle is in the cut."""
     j = joint(alpha=alpha, center=center)
-    windows = window_intervals(j, seam, turns)
+    windows = window_intervals(j, seam, Roll(10.125, 0.25, turns))
     assert np.ptp(windows, axis=1).sum() == pytest.approx(turns * (360 - alpha), abs=1e-6)
     phi = fraction * 360 * turns
     off = angle_off(phi + seam, center)
@@ -119,17 +120,17 @@ def test_cut_covers_what_is_not_uncut(turns, alpha, center, seam, fraction):
     ],
 )
 def test_window_intervals(seam, expected):
-    np.testing.assert_allclose(window_intervals(joint(alpha=132), seam, 2), expected, atol=1e-9)
+    np.testing.assert_allclose(window_intervals(joint(alpha=132), seam, TWICE), expected, atol=1e-9)
 
 
 def test_nothing_and_everything_cut():
-    assert window_intervals(joint(alpha=360), 270, 2).shape == (0, 2)
-    np.testing.assert_array_equal(window_intervals(joint(alpha=0), 270, 2), [[0, 720]])
+    assert window_intervals(joint(alpha=360), 270, TWICE).shape == (0, 2)
+    np.testing.assert_array_equal(window_intervals(joint(alpha=0), 270, TWICE), [[0, 720]])
 
 
 def test_alpha_beyond_the_circle_is_refused():
     with pytest.raises(ValueError, match="joint 1"):
-        window_intervals(joint(alpha=361), 270, 2)
+        window_intervals(joint(alpha=361), 270, TWICE)
 
 
 @pytest.mark.parametrize(
@@ -162,8 +163,7 @@ def test_overlapping_joints_share_their_slits():
     shared = [cut for cut in cuts if cut.x_mm == 21]
     assert {cut.joint for cut in shared} == {1}
     # Uncut in both: 220..250 deg, so two turns of 330 deg are cut.
-    roll = Roll(20, 0.25, 2)
-    spans = [float(roll.phi_deg(c.y_end_mm) - roll.phi_deg(c.y_start_mm)) for c in shared]
+    spans = [float(TWICE.phi_deg(c.y_end_mm) - TWICE.phi_deg(c.y_start_mm)) for c in shared]
     assert sum(spans) == pytest.approx(660)
 
 
