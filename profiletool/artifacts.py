@@ -6,46 +6,84 @@ from collections.abc import Sequence
 
 from profiletool.designfile import to_json
 from profiletool.joints.kinematics import deform
+from profiletool.options import options_of
 from profiletool.pipeline import Result
 from profiletool.records import Design, FloatArray, Verification
+from profiletool.report.dossier import Dossier
+from profiletool.report.error import error_figure
 from profiletool.report.fe import theta_csv
+from profiletool.report.figure import png
 from profiletool.report.files import mask_png, shape_csv
+from profiletool.report.html import report_html
 from profiletool.report.overlay import Scene, backdrop_of, draw_overlay
-from profiletool.report.plots import Mark, draw_theta, draw_trajectories
-from profiletool.report.tradeoff import draw_trade_off, trade_off_csv
+from profiletool.report.plots import Mark, theta_figure, trajectories_figure
+from profiletool.report.tradeoff import trade_off_csv, trade_off_figure
 from profiletool.report.vtu import write_pvd, write_vtu
-from profiletool.template.dxf import write_dxf
+from profiletool.template.dxf import Version, write_dxf
+from profiletool.template.kinds import Wish
 from profiletool.template.layout import build_sheet
+from profiletool.template.mounting import mounting_drawing
+from profiletool.template.pdf import Paper, write_pdf
 from profiletool.template.svg import write_svg
 from profiletool.verify import Run
 
 
-def files_of(result: Result) -> dict[str, bytes]:
-    """Make every file of the output folder: name to content."""
+def files_of(
+    result: Result,
+    wish: Wish = Wish(),  # noqa: B008
+    paper: Paper = "a4",
+) -> dict[str, bytes]:
+    """Make every file of the output folder: name to content.
+
+    Parameters
+    ----------
+    result : Result
+    wish : Wish
+        What the template shall be.
+    paper : {"a4", "letter"}
+        Of the PDFs.
+    """
     design, checked = result.design, result.check
     lines = {"target": result.subject.profile.points, "formula": result.shape.facing}
     if result.plan.by != "formula":
         lines["response"] = result.plan.bent.facing
     if checked is not None and checked.shape is not None:
         lines["fe"] = checked.shape.facing
+    scene = scene_of(result)
     files = {
         "design.json": to_json(design).encode(),
-        **template_files(design),
+        **template_files(design, wish, paper),
         "shape.csv": shape_csv(lines),
-        "overlay.png": draw_overlay(scene_of(result)),
+        **mounting_files(result, scene, paper),
+        "overlay.png": draw_overlay(scene),
+        "error_along_arc.png": png(error_figure(scene, result.shape, design.source.file)),
     }
     if result.plan.trade_off is not None:
         files["trade_off.csv"] = trade_off_csv(result.plan.trade_off)
-        files["trade_off.png"] = draw_trade_off(result.plan.trade_off, design)
+        files["trade_off.png"] = png(trade_off_figure(result.plan.trade_off, design))
     if result.subject.silhouette is not None:
         files["mask.png"] = mask_png(result.subject.silhouette.mask)
     if checked is not None and checked.run is not None:
         found = checked.run.verification
         files |= theta_files(found, design.source.file, formula_marks(design))
         if checked.shape is not None:
-            solution = checked.run.solution
-            files["actuator.vtu"] = write_vtu(solution.mesh, solution.states[-1].x)
+            files |= mesh_files(checked.run)
+    files["report.html"] = report_html(dossier_of(result, scene, files["template.svg"].decode()))
     return files
+
+
+def dossier_of(result: Result, scene: Scene, template_svg: str) -> Dossier:
+    """Gather what the report tells."""
+    return Dossier(
+        scene,
+        result.shape,
+        result.check,
+        result.reasons,
+        formula_marks(result.design),
+        result.plan.trade_off,
+        template_svg,
+        options_of(result.request),
+    )
 
 
 def fe_files(
@@ -65,20 +103,27 @@ def fe_files(
     marks : sequence of Mark
         Angles to compare with.
     """
-    found, solution = run.verification, run.solution
+    found = run.verification
     lines = {} if target is None else {"target": target}
     lines |= {"rest": found.rest.shape.facing, "fe": found.last.shape.facing}
-    series = [(10.0 * s.pressure, f"actuator_{k:02d}.vtu") for k, s in enumerate(solution.states)]
     return {
         "fe.json": told.encode(),
         **theta_files(found, title, marks),
         "shape.csv": shape_csv(lines),
-        "actuator.vtu": write_vtu(solution.mesh, solution.states[-1].x),
-        "actuator.pvd": write_pvd(series),
-        **{
-            name: write_vtu(solution.mesh, state.x)
-            for (_, name), state in zip(series, solution.states, strict=True)
-        },
+        **mesh_files(run),
+    }
+
+
+def mesh_files(run: Run) -> dict[str, bytes]:
+    """Write the deformed mesh for ParaView: at the highest pressure, and as a series."""
+    solution = run.solution
+    names = [f"actuator_{k:02d}.vtu" for k in range(len(solution.states))]
+    pressures_bar = [10.0 * state.pressure for state in solution.states]
+    meshes = [write_vtu(solution.mesh, state.x) for state in solution.states]
+    return {
+        "actuator.vtu": meshes[-1],
+        "actuator.pvd": write_pvd(list(zip(pressures_bar, names, strict=True))),
+        **dict(zip(names, meshes, strict=True)),
     }
 
 
@@ -86,13 +131,13 @@ def theta_files(found: Verification, title: str, marks: Sequence[Mark] = ()) -> 
     """Tabulate and draw angles against pressure."""
     return {
         "theta_vs_pressure.csv": theta_csv(found),
-        "theta_vs_pressure.png": draw_theta(found, title, marks),
+        "theta_vs_pressure.png": png(theta_figure(found, title, marks)),
     }
 
 
 def trajectory_files(found: Verification, title: str) -> dict[str, bytes]:
     """Draw the ways of the phalanges."""
-    return {"trajectories.png": draw_trajectories(found, title)}
+    return {"trajectories.png": png(trajectories_figure(found, title))}
 
 
 def formula_marks(design: Design) -> tuple[Mark, ...]:
@@ -102,10 +147,26 @@ def formula_marks(design: Design) -> tuple[Mark, ...]:
     return (Mark(label, design.pressure_bar, angles),)
 
 
-def template_files(design: Design) -> dict[str, bytes]:
-    """Draw the cut template of a design."""
-    drawing = build_sheet(design).drawing
-    return {"template.dxf": write_dxf(drawing), "template.svg": write_svg(drawing).encode()}
+def template_files(
+    design: Design,
+    wish: Wish = Wish(),  # noqa: B008
+    paper: Paper = "a4",
+    version: Version = "R2000",
+) -> dict[str, bytes]:
+    """Draw a template of a design for cutters, plotters and printers."""
+    sheet = build_sheet(design, wish)
+    return {
+        "template.dxf": write_dxf(sheet.drawing, version),
+        "template.svg": write_svg(sheet.drawing).encode(),
+        "template.pdf": write_pdf(sheet.drawing, paper, sheet.parts),
+    }
+
+
+def mounting_files(result: Result, scene: Scene, paper: Paper = "a4") -> dict[str, bytes]:
+    """Draw how the tube is clamped beside its object, and the palm that is drilled for it."""
+    bent = scene.bent if scene.fe is None else scene.fe
+    drawing = mounting_drawing(result.design, result.subject.profile, scene.straight, bent)
+    return {"mounting.dxf": write_dxf(drawing), "mounting.pdf": write_pdf(drawing, paper)}
 
 
 def scene_of(result: Result) -> Scene:

@@ -10,15 +10,14 @@ from typing import Annotated, Any, Literal, cast
 
 import typer
 
-from profiletool import __version__, cli_derive, cli_fe
+from profiletool import __version__, cli_derive, cli_fe, cli_table, cli_template
+from profiletool.cli_template import Date, Kerf, Paper
 from profiletool.console import (
     Debug,
     Extrapolate,
     FormulaFile,
-    Json,
     Quiet,
     exit_codes,
-    numbers,
     progress_bar,
     speaker,
 )
@@ -191,6 +190,9 @@ def design(
     refine: Annotated[
         bool, typer.Option(help="Let finite elements correct the design (optimal; needs verify).")
     ] = True,
+    kerf: Kerf = 0.0,
+    date: Date = "",
+    paper: Paper = "a4",
     config: Annotated[
         Path | None,
         typer.Option(callback=_config, is_eager=True, help="TOML file with any of these options."),
@@ -210,6 +212,8 @@ def design(
         from profiletool.image.scale import ScaleRequest
         from profiletool.records import Material
         from profiletool.report.text import joint_table
+        from profiletool.template.kerf import check_kerf
+        from profiletool.template.kinds import Wish
 
         folder = out or Path(f"{picture.stem}_design")
         output.check_free(folder, force)
@@ -242,10 +246,14 @@ def design(
             alpha_step_deg=alpha_step,
             place_step_mm=place_step,
         )
+        try:
+            check_kerf(kerf, pitch, request.material.thread_mm)
+        except ValueError as error:
+            raise UsageError(f"--kerf: {error}") from error
         say = speaker(quiet)
         with progress_bar("finite elements", quiet) as progress:
             result = pipeline.run(request, say, progress)
-        files = artifacts.files_of(result)
+        files = artifacts.files_of(result, Wish(kerf_mm=kerf, date=date), paper)
         output.write_folder(folder, files, force)
         text = files["design.json"].decode() if as_json else joint_table(result.design)
         typer.echo(text, nl=False)
@@ -269,93 +277,11 @@ for _command, _example in (
     (cli_fe.joint, "profiletool joint --openF 10 --alpha 84 --pressure 2.0"),
     (cli_fe.finger, "profiletool finger --out finger"),
     (cli_derive.derive, "profiletool derive --diameter 16 --wall 1.6 --out tube16.json"),
+    (cli_table.table, "profiletool table --openF 6,8,10 --csv"),
+    (cli_table.assign, "profiletool assign --openF 8,8,8,8,6,10 --theta 30,30,30,25,20,45"),
+    (cli_template.template, "profiletool template bulb_design/design.json --variant strip"),
 ):
     app.command(epilog=f"Example:  {_example}")(_command)
-
-
-@app.command(epilog="Example:  profiletool table --openF 6,8,10 --csv")
-def table(
-    openF: Annotated[
-        str | None, typer.Option("--openF", help="Cuts, mm, with commas (default: 6,8,10).")
-    ] = None,
-    formula: FormulaFile = None,
-    extrapolate: Extrapolate = False,
-    as_json: Json = False,
-    as_csv: Annotated[bool, typer.Option("--csv", help="Print the table as CSV.")] = False,
-    debug: Debug = False,
-) -> None:
-    """Print the theta table of a formula (the paper's Table 4)."""
-    with exit_codes(debug):
-        from formula.errors import OutOfRange
-        from formula.table import make_table
-        from profiletool.pipeline import read_formula
-        from profiletool.report.text import theta_csv, theta_json, theta_text
-
-        try:
-            cuts = None if openF is None else numbers("--openF", openF)
-            made = make_table(read_formula(formula, extrapolate), openF_mm=cuts)
-        except OutOfRange as error:
-            raise UsageError(str(error)) from error
-        if as_json and as_csv:
-            raise UsageError("--json and --csv exclude each other")
-        layout = theta_json if as_json else theta_csv if as_csv else theta_text
-        typer.echo(layout(made), nl=False)
-
-
-@app.command(epilog="Example:  profiletool assign --openF 8,8,8,8,6,10 --theta 30,30,30,25,20,45")
-def assign(
-    openF: Annotated[str, typer.Option("--openF", help="Cut of every joint, mm, with commas.")],
-    theta: Annotated[str, typer.Option("--theta", help="Angle of every joint, deg, with commas.")],
-    formula: FormulaFile = None,
-    extrapolate: Extrapolate = False,
-    as_json: Json = False,
-    debug: Debug = False,
-) -> None:
-    """Choose pressure and alpha for given joints by the paper's table procedure."""
-    with exit_codes(debug):
-        from formula.errors import OutOfRange
-        from formula.table import assign as look_up
-        from formula.table import make_table
-        from profiletool.pipeline import read_formula
-        from profiletool.report.text import assignment_json, assignment_text
-
-        cuts, angles = numbers("--openF", openF), numbers("--theta", theta)
-        if len(cuts) != len(angles):
-            raise UsageError(
-                f"--openF has {len(cuts)} numbers, --theta {len(angles)}: give one each per joint"
-            )
-        if min(angles) <= 0.0:
-            raise UsageError("--theta takes angles above 0; their direction does not matter here")
-        try:
-            known = make_table(read_formula(formula, extrapolate), openF_mm=cuts)
-            found = look_up(known, cuts, angles)
-        except OutOfRange as error:
-            raise Infeasible(str(error)) from error
-        text = assignment_json(found) if as_json else assignment_text(cuts, angles, found)
-        typer.echo(text, nl=False)
-
-
-@app.command(epilog="Example:  profiletool template bulb_design/design.json --out bulb_template")
-def template(
-    file: Annotated[Path, typer.Argument(metavar="DESIGN.json", help="A design.json.")],
-    out: Annotated[
-        Path | None, typer.Option(help="Output folder (default: name + _template).")
-    ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace an earlier template.")] = False,
-    quiet: Quiet = False,
-    debug: Debug = False,
-) -> None:
-    """Draw the cut template of a design anew."""
-    with exit_codes(debug):
-        from profiletool import artifacts, output
-        from profiletool.designfile import load_design, to_json
-
-        folder = out or Path(f"{file.stem}_template")
-        output.check_free(folder, force)
-        made = load_design(file)
-        files = {**artifacts.template_files(made), "design.json": to_json(made).encode()}
-        output.write_folder(folder, files, force)
-        speaker(quiet)(f"written: {folder}")
 
 
 if __name__ == "__main__":

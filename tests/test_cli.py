@@ -732,3 +732,28 @@ def test_a_bar_on_a_terminal_only(monkeypatch: pytest.MonkeyPatch) -> None:
                 show(0.5)
         assert ("finite elements" in stream.getvalue()) == shown
         assert "\x1b[3" not in stream.getvalue()  # no colours
+
+
+def test_template_for_other_ways_to_make_it(samples: Path, tmp_path: Path) -> None:
+    design = samples / "paper_bulb.json"
+    options = ("--variant", "strip", "--kerf", "0.2", "--date", "26 Nov 2026", "--dxf", "R12")
+    assert call("template", design, "--out", "strip", *options, "--paper", "letter").exit_code == 0
+    strip = tmp_path / "strip"
+    assert {file.name for file in strip.iterdir()} == {
+        "design.json", "template.dxf", "template.pdf", "template.svg",
+    }  # fmt: skip
+    assert b"AC1009" in (strip / "template.dxf").read_bytes()[:100]
+    assert "<title>Marking strip: " in (strip / "template.svg").read_text()
+    pdf = (strip / "template.pdf").read_bytes()
+    assert pdf.startswith(b"%PDF")
+    assert call("template", design, "--out", "again", *options, "--paper", "letter").exit_code == 0
+    assert (tmp_path / "again" / "template.pdf").read_bytes() == pdf
+
+
+@pytest.mark.parametrize("kerf", ["-1", "1.75", "nan"])
+def test_a_kerf_that_burns_threads_is_bad_usage(samples: Path, tmp_path: Path, kerf: str) -> None:
+    for command, file in (("template", "paper_bulb.json"), ("design", "egg.png")):
+        result = call(command, samples / file, "--kerf", kerf, "--out", "x")
+        assert result.exit_code == 2
+        assert "does not pass between hoop threads 1.75 mm apart" in error_of(result)
+    assert not (tmp_path / "x").exists()

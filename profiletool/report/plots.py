@@ -1,4 +1,4 @@
-"""Angles against pressure, and the ways that the phalanges take, as pictures."""
+"""Angles against pressure, and the ways that the phalanges take, as figures."""
 
 from __future__ import annotations
 
@@ -7,12 +7,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from profiletool.records import FeState, FloatArray, Verification
-from profiletool.report.figure import panels, png, styles
+from profiletool.report.figure import WIDE_IN, legend_below, panels, styles, titled
 from profiletool.report.palette import GREY, RED
 
 _SHOWN = 5  # outlines of the tube between rest and the highest pressure, both among them
+_COLUMNS = 4  # of a legend
 
 
 @dataclass(frozen=True)
@@ -24,11 +26,11 @@ class Mark:
     theta_deg: Sequence[float]
 
 
-def draw_theta(found: Verification, title: str, marks: Sequence[Mark] = ()) -> bytes:
-    """Draw the angle of every joint against pressure, as PNG."""
-    figure, (axes,) = panels(1, 7.6, 5.0)
-    pressures = [0.0, *found.pressures_bar]
+def theta_figure(found: Verification, title: str, marks: Sequence[Mark] = ()) -> Figure:
+    """Draw the angle of every joint against pressure."""
     rows = found.theta_deg
+    figure, (axes,) = panels(1, WIDE_IN, 4.2 + 0.2 * ((len(rows) + len(marks)) // _COLUMNS))
+    pressures = [0.0, *found.pressures_bar]
     axes.axhline(0.0, color=GREY, lw=0.8, zorder=1)
     for k, (theta, (colour, marker)) in enumerate(zip(rows, styles(len(rows)), strict=True)):
         axes.plot(
@@ -51,13 +53,13 @@ def draw_theta(found: Verification, title: str, marks: Sequence[Mark] = ()) -> b
     axes.set_xlim(0.0, 1.04 * max(found.asked_bar, *pressures))
     axes.set_xlabel("pressure (bar)")
     axes.set_ylabel("joint angle θ (deg), positive toward the object")
-    axes.set_title(title, fontsize=11, loc="left")
-    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=9.5)
-    return png(figure)
+    titled(axes, title)
+    legend_below(figure, axes, _COLUMNS)
+    return figure
 
 
-def draw_trajectories(found: Verification, title: str) -> bytes:
-    """Draw the ways of the phalanges' midpoints as the pressure rises, as PNG (paper, Fig. 4)."""
+def trajectories_figure(found: Verification, title: str) -> Figure:
+    """Draw the ways of the phalanges' midpoints as the pressure rises (paper, Fig. 4)."""
     states = [found.rest, *found.states]
     figure, (axes,) = panels(1, 7.6, 6.4)
     _draw_outlines(axes, states)
@@ -72,9 +74,9 @@ def draw_trajectories(found: Verification, title: str) -> bytes:
     axes.set_xlabel("x (mm), along the tube at rest")
     axes.set_ylabel("y (mm)")
     steps = "" if len(states) < 3 else f", a mark every {np.diff(found.pressures_bar)[0]:.2g} bar"
-    axes.set_title(f"{title}{steps}", fontsize=11, loc="left")
+    titled(axes, f"{title}{steps}")
     axes.legend(loc="lower left", frameon=False, fontsize=9.5)
-    return png(figure)
+    return figure
 
 
 def _draw_outlines(axes: Any, states: Sequence[FeState]) -> None:

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator
 
 from profiletool.joints.optimal import TradeOff
 from profiletool.records import Design
-from profiletool.report.figure import panels, png
-from profiletool.report.palette import BLUE, GREEN, GREY, INK, PURPLE, RED, SKY
+from profiletool.report.figure import WIDE_IN, panels
+from profiletool.report.palette import BLUE, GREEN, GREY, GRID, INK, PURPLE, RED, SKY
 
 _BAR = 10.0  # in a MPa
 _COLOURS = (BLUE, RED, GREEN, PURPLE, SKY, GREY)
+_MARKERS = ("o", "s", "^", "D", "v", "P")
 _SHOWN = 6  # numbers of joints drawn against pressure
 
 
@@ -27,40 +32,53 @@ def trade_off_csv(found: TradeOff) -> bytes:
     return ("\n".join(rows) + "\n").encode()
 
 
-def draw_trade_off(found: TradeOff, design: Design) -> bytes:
-    """Draw the error against the number of joints, and against pressure, as PNG."""
-    figure, (left, right) = panels(2, 10.0, 4.4)
+def trade_off_figure(found: TradeOff, design: Design) -> Figure:
+    """Draw the error against the number of joints, and against pressure."""
+    figure, (upper, lower) = panels(2, WIDE_IN, 7.2, below=True)
+    _draw_numbers(upper, found, design)
+    _draw_pressures(lower, found, design)
+    for axes in (upper, lower):
+        axes.set_ylabel("RMS distance to the profile (mm)")
+        axes.set_yscale("log")
+        axes.yaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
+        for ticks in (axes.yaxis.set_major_formatter, axes.yaxis.set_minor_formatter):
+            ticks("{x:g}")
+        axes.tick_params(axis="y", which="minor", labelsize=8)
+        axes.grid(visible=True, which="both", color=GRID, lw=0.6)
+        axes.legend(fontsize=9, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    return figure
+
+
+def _draw_numbers(axes: Any, found: TradeOff, design: Design) -> None:
     numbers = np.arange(1, found.rms_mm.shape[1] + 1)
     best = found.rms_mm.min(axis=0)
     known = np.isfinite(best)
-    left.plot(numbers[known], best[known], color=BLUE, marker="o", ms=4, label="best of the grid")
+    axes.plot(numbers[known], best[known], color=BLUE, marker="o", ms=4, label="best of\nthe grid")
     polished = np.isfinite(found.polished_mm)
-    left.plot(
+    axes.plot(
         numbers[polished], found.polished_mm[polished], color=RED, marker="s", ms=5, ls="none",
         label="polished",
     )  # fmt: skip
-    chosen, fit = len(design.joints), design.fit.fe or design.fit.response or design.fit.formula
+    fit = design.fit.fe or design.fit.response or design.fit.formula
     by = "FE" if design.fit.fe is not None else "predicted"
-    left.plot(
-        [chosen], [fit.rms_mm], color=INK, marker="*", ms=13, ls="none", label=f"chosen ({by})"
-    )
-    left.set_xlabel("joints")
-    some = numbers[known][:: max(1, int(np.ceil(known.sum() / _SHOWN)))]
-    shown = sorted({*some.tolist(), *([chosen] if chosen in numbers[known] else [])})
+    axes.plot(
+        [len(design.joints)], [fit.rms_mm], color=INK, marker="*", ms=13, ls="none",
+        label=f"chosen\n({by})",
+    )  # fmt: skip
+    axes.xaxis.get_major_locator().set_params(integer=True)
+    axes.set_xlabel("joints")
+
+
+def _draw_pressures(axes: Any, found: TradeOff, design: Design) -> None:
+    chosen = len(design.joints)
+    known = np.flatnonzero(np.isfinite(found.rms_mm.min(axis=0))) + 1
+    some = known[:: max(1, int(np.ceil(len(known) / _SHOWN)))]
+    shown = sorted({*some.tolist(), *({chosen} & set(known.tolist()))})
     for k, number in enumerate(shown):
-        right.plot(
+        axes.plot(
             _BAR * found.pressure, found.rms_mm[:, number - 1], color=_COLOURS[k % len(_COLOURS)],
-            marker="o", ms=4, lw=2.4 if number == chosen else 1.3,
+            marker=_MARKERS[k % len(_MARKERS)], ms=4, lw=2.4 if number == chosen else 1.3,
             label=f"{number} joint{'s' * (number > 1)}",
         )  # fmt: skip
-    right.axvline(design.pressure_bar, color=INK, lw=1.0, ls=(0, (4, 3)), label="chosen")
-    right.set_xlabel("pressure (bar)")
-    for axes in (left, right):
-        axes.set_ylabel("RMS distance to the profile (mm)")
-        axes.set_yscale("log")
-        for ticks in (axes.yaxis.set_major_formatter, axes.yaxis.set_minor_formatter):
-            ticks("{x:g}")
-        axes.tick_params(axis="y", which="minor", labelsize=7)
-        axes.grid(visible=True, which="both", alpha=0.25)
-        axes.legend(fontsize=8, frameon=False)
-    return png(figure)
+    axes.axvline(design.pressure_bar, color=INK, lw=1.0, ls=(0, (4, 3)), label="chosen")
+    axes.set_xlabel("pressure (bar)")

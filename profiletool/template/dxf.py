@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Literal
@@ -45,10 +46,16 @@ def write_dxf(drawing: Drawing, version: Version = "R2000") -> bytes:
 
 @contextmanager
 def _fixed_metadata() -> Iterator[None]:
-    """Have ezdxf write fixed times, identifiers and version; put its option back at the end."""
-    before = options.write_fixed_meta_data_for_testing
+    """Have ezdxf write fixed times, identifiers and version; put its options back at the end.
+
+    It is kept from logging that R12 has no units.
+    """
+    log = logging.getLogger("ezdxf")
+    before = options.write_fixed_meta_data_for_testing, log.level
     options.write_fixed_meta_data_for_testing = True
+    log.setLevel(logging.ERROR)
     try:
         yield
     finally:
-        options.write_fixed_meta_data_for_testing = before
+        options.write_fixed_meta_data_for_testing = before[0]
+        log.setLevel(before[1])

@@ -15,6 +15,18 @@ from profiletool.template.unroll import SAME_MM, Slit
 _MITRE_LIMIT = 10.0  # keeps every corner of an outline sharp
 
 
+def check_kerf(kerf_mm: float, pitch_mm: float, thread_mm: float) -> None:
+    """Refuse a kerf that burns into the hoop threads, or is none.
+
+    Raises
+    ------
+    ValueError
+    """
+    room = pitch_mm - thread_mm
+    if not 0.0 <= kerf_mm < room:
+        raise ValueError(f"{kerf_mm:g} mm does not pass between hoop threads {room:g} mm apart")
+
+
 def outline_path(outline: FloatArray, kerf_mm: float) -> FloatArray:
     """Return where the middle of the cut runs around an outline (N, 2) mm: outside it."""
     if kerf_mm == 0.0:

@@ -10,7 +10,7 @@ import numpy as np
 
 from profiletool.records import Design, FloatArray, Joint
 from profiletool.template.drawing import Box, Drawing, Line
-from profiletool.template.kerf import outline_path, slit_paths
+from profiletool.template.kerf import check_kerf, outline_path, slit_paths
 from profiletool.template.kinds import KINDS, Wish
 from profiletool.template.labels import joint_labels
 from profiletool.template.margins import LEFT_MM, RIGHT_MM, gaps, margins
@@ -68,11 +68,7 @@ def build_sheet(design: Design, wish: Wish = Wish()) -> Sheet:  # noqa: B008
     tube, gauze = design.tube, design.gauze
     if gauze.turns < 1 or tube.length_mm <= 0:
         raise ValueError("a template needs a tube of some length and at least one turn of gauze")
-    if not 0 <= wish.kerf_mm < gauze.pitch_mm - gauze.thread_mm:
-        raise ValueError(
-            f"a kerf of {wish.kerf_mm:g} mm does not pass between hoop threads "
-            f"{gauze.pitch_mm - gauze.thread_mm:g} mm apart"
-        )
+    check_kerf(wish.kerf_mm, gauze.pitch_mm, gauze.thread_mm)
     kind, roll = KINDS[wish.variant], roll_of(tube, gauze, wish.variant)
     size = tube.length_mm, roll.length_mm
     seam = seam_at(design.joints, gauze.seam_deg)

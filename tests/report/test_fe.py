@@ -20,7 +20,8 @@ from profiletool.report.fe import (
     ranges_text,
     theta_csv,
 )
-from profiletool.report.plots import Mark, draw_theta, draw_trajectories
+from profiletool.report.figure import png
+from profiletool.report.plots import Mark, theta_figure, trajectories_figure
 
 LINE = np.column_stack([np.linspace(0.0, 90.0, 10), np.zeros(10)])
 SHAPE = Shape(LINE[:, 0], LINE, LINE + np.array([0.0, 10.0]), LINE + np.array([0.0, 20.0]))
@@ -67,8 +68,8 @@ def test_a_run_that_ends_at_once_prints_too() -> None:
     assert json.loads(fe_json(nothing))["theta_deg"] == [[]]
     assert "at 0.00 bar" in fe_text(nothing)
     assert theta_csv(nothing) == b"pressure_bar,theta1_deg,air_ml\n"
-    for png in (draw_theta(nothing, "x"), draw_trajectories(nothing, "x")):
-        assert png.startswith(b"\x89PNG")
+    for figure in (theta_figure(nothing, "x"), trajectories_figure(nothing, "x")):
+        assert png(figure).startswith(b"\x89PNG")
 
 
 def test_text_and_csv() -> None:
@@ -107,11 +108,11 @@ def test_comparison_with_a_design(samples: Path) -> None:
 
 
 def test_pictures_show_what_they_are_given() -> None:
-    plain = draw_theta(FINGER, "finger")
-    marked = draw_theta(FINGER, "finger", [Mark("formula", 2.0, (70.0, 80.0, 60.0))])
-    ended = draw_theta(replace(FINGER, critical=Critical("limit point", 2.25)), "finger")
+    plain = png(theta_figure(FINGER, "finger"))
+    marked = png(theta_figure(FINGER, "finger", [Mark("formula", 2.0, (70.0, 80.0, 60.0))]))
+    ended = png(theta_figure(replace(FINGER, critical=Critical("limit point", 2.25)), "finger"))
     assert len({plain, marked, ended}) == 3
-    assert plain == draw_theta(FINGER, "finger")
+    assert plain == png(theta_figure(FINGER, "finger"))
     many = run(state(1.0, *range(1, 13)))
-    assert draw_theta(many, "twelve joints").startswith(b"\x89PNG")
-    assert draw_trajectories(many, "twelve joints").startswith(b"\x89PNG")
+    assert png(theta_figure(many, "twelve joints")).startswith(b"\x89PNG")
+    assert png(trajectories_figure(many, "twelve joints")).startswith(b"\x89PNG")

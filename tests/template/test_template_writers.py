@@ -134,3 +134,19 @@ def test_golden_files_reread():
     assert len(cuts) == 2 * 19 + 3 * 5
     root = ElementTree.parse(GOLDEN / "template_bulb.svg").getroot()
     assert len(root.find(f"{SVG}g[@id='CUT_INNER']")) == 2 * 19 + 3 * 5
+
+
+@pytest.mark.parametrize("build", DESIGNS)
+def test_r12_holds_the_same_lines(build, caplog):
+    sheet = build_sheet(build())
+    doc = read_back(write_dxf(sheet.drawing, "R12"))
+    assert doc.dxfversion == "AC1009"
+    entities = list(doc.modelspace())
+    assert {entity.dxftype() for entity in entities} == {"POLYLINE"}
+    drawn = [line for layer in sheet.drawing.layers for line in layer.lines]
+    assert len(entities) == len(drawn)
+    for entity, line in zip(entities, drawn, strict=True):
+        assert (entity.dxf.layer, entity.is_closed) == (line.layer, line.closed)
+        points = [tuple(point)[:2] for point in entity.points()]
+        np.testing.assert_allclose(points, line.points, atol=1e-6)
+    assert caplog.records == []

@@ -1,0 +1,62 @@
+"""The command that draws templates, and the options that it shares with `design`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from profiletool.console import Debug, Quiet, exit_codes, speaker
+from profiletool.errors import UsageError
+
+Paper = Annotated[
+    Literal["a4", "letter"], typer.Option(help="Pages of the PDFs; larger pieces are tiled.")
+]
+Kerf = Annotated[
+    float, typer.Option(help="Width that the beam or blade takes away, mm: lines move by half.")
+]
+Date = Annotated[str, typer.Option(help="Date to print on the template, in any form.")]
+
+
+def template(
+    file: Annotated[Path, typer.Argument(metavar="DESIGN.json", help="A design.json.")],
+    variant: Annotated[
+        Literal["gauze", "sleeve", "strip"],
+        typer.Option(
+            help="The gauze to roll up, one turn for a seamless sleeve, or a paper strip to wrap "
+            "around the rolled gauze and mark through."
+        ),
+    ] = "gauze",
+    kerf: Kerf = 0.0,
+    date: Date = "",
+    paper: Paper = "a4",
+    dxf: Annotated[
+        Literal["R2000", "R12"],
+        typer.Option(help="Version of the DXF; R12 knows no units: tell its reader mm."),
+    ] = "R2000",
+    out: Annotated[
+        Path | None, typer.Option(help="Output folder (default: name + _template).")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an earlier template.")] = False,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Draw the cut template of a design anew, or for another way to make it."""
+    with exit_codes(debug):
+        from profiletool import artifacts, output
+        from profiletool.designfile import load_design, to_json
+        from profiletool.template.kerf import check_kerf
+        from profiletool.template.kinds import Wish
+
+        folder = out or Path(f"{file.stem}_template")
+        output.check_free(folder, force)
+        made = load_design(file)
+        try:
+            check_kerf(kerf, made.gauze.pitch_mm, made.gauze.thread_mm)
+        except ValueError as error:
+            raise UsageError(f"--kerf: {error}") from error
+        files = artifacts.template_files(made, Wish(variant, kerf, date), paper, dxf)
+        files["design.json"] = to_json(made).encode()
+        output.write_folder(folder, files, force)
+        speaker(quiet)(f"written: {folder}")

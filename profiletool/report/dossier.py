@@ -1,0 +1,61 @@
+"""What the report is made from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from profiletool.joints.optimal import TradeOff
+from profiletool.records import Shape, Verification
+from profiletool.report.overlay import Scene
+from profiletool.report.plots import Mark
+from profiletool.report.tables import Option
+from profiletool.verify import Check
+
+
+@dataclass(frozen=True)
+class Dossier:
+    """All that the report tells.
+
+    Attributes
+    ----------
+    scene : Scene
+        The object with the tube beside it; its design is the report's.
+    by_formula : Shape
+        The tube as the formula bends it.
+    check : Check or None
+        The finite-element run; None where none was asked for.
+    reasons : tuple of str
+        Why the design is infeasible; none where it is feasible.
+    marks : sequence of Mark
+        Angles to compare those of finite elements with.
+    trade_off : TradeOff or None
+    template_svg : str
+        The cut template, as its file has it.
+    options : sequence of Option
+        What was asked for.
+    """
+
+    scene: Scene
+    by_formula: Shape
+    check: Check | None
+    reasons: tuple[str, ...]
+    marks: Sequence[Mark]
+    trade_off: TradeOff | None
+    template_svg: str
+    options: Sequence[Option]
+
+    @property
+    def found(self) -> Verification | None:
+        """What finite elements say, where they were run."""
+        run = None if self.check is None else self.check.run
+        return None if run is None else run.verification
+
+    @property
+    def unverified(self) -> str | None:
+        """Why the design is not verified; None where it is."""
+        if self.scene.design.verified:
+            return None
+        if self.check is None or self.check.failure is None:
+            return "no finite-element run has checked this design"
+        return f"finite elements: {self.check.failure}"

@@ -1,0 +1,144 @@
+"""The tube at rising pressures, thinned to what a page needs to move it.
+
+Lengths are whole hundredths of a millimetre here, x to the right and y *down*, as SVG has it, so
+that the page's script and this module write the same path for the same state.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from profiletool.records import Design, FloatArray, Shape, Verification
+
+_POINTS = 84  # of a line, at most some more
+_PER_MM = 100
+
+IntArray = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Film:
+    """States of a tube, from rest on.
+
+    Attributes
+    ----------
+    pressure_bar : (S,)
+    theta_deg : (S, n)
+        Positive toward the object.
+    air_ml : (S,)
+    lines : (S, 2, N, 2)
+        The object-facing surface line, then the far one; hundredths of a mm, y down.
+    windows : (n, 3)
+        Where on the lines each joint's cut starts, has its centre, and ends.
+    """
+
+    pressure_bar: FloatArray
+    theta_deg: FloatArray
+    air_ml: FloatArray
+    lines: IntArray
+    windows: IntArray
+
+    @property
+    def moves(self) -> bool:
+        """Whether there is more than one state."""
+        return len(self.lines) > 1
+
+    def outline(self) -> str:
+        """Path of the whole tube in its last state."""
+        facing, far = self.lines[-1]
+        return ring_path(facing, far)
+
+    def window(self, joint: int) -> str:
+        """Path of a joint's cut in the last state; joints count from 0 here."""
+        start, _, end = self.windows[joint].tolist()
+        facing, far = self.lines[-1]
+        return ring_path(facing[start : end + 1], far[start : end + 1])
+
+    def centre(self, joint: int) -> tuple[str, str]:
+        """Where the middle of a joint is in the last state, mm as SVG has it."""
+        x, y = self.lines[-1, :, self.windows[joint, 1]].sum(axis=0) // 2
+        return _mm(int(x)), _mm(int(y))
+
+    def as_json(self) -> str:
+        """Write all states for the page's script."""
+        tree = {
+            "bar": np.round(self.pressure_bar, 4).tolist(),
+            "theta": np.round(self.theta_deg, 4).tolist(),
+            "air": np.round(self.air_ml, 3).tolist(),
+            "lines": self.lines.reshape(len(self.lines), -1).tolist(),
+            "windows": self.windows.tolist(),
+        }
+        return json.dumps(tree, separators=(",", ":"), allow_nan=False)
+
+
+def film_of(found: Verification, design: Design) -> Film:
+    """Take the states of a finite-element run, rest among them."""
+    states = (found.rest, *found.states)
+    return _film(
+        [state.shape for state in states],
+        design,
+        np.array([state.pressure_bar for state in states]),
+        np.array([state.theta_deg for state in states]),
+        np.array([state.air_ml for state in states]),
+    )
+
+
+def still_of(shape: Shape, design: Design) -> Film:
+    """Take a single shape; its angles and its air are not told."""
+    n = len(design.joints)
+    return _film([shape], design, np.zeros(1), np.zeros((1, n)), np.zeros(1))
+
+
+def ring_path(facing: IntArray, far: IntArray) -> str:
+    """Path around what lies between two lines (N, 2)."""
+    return path(np.concatenate([facing, far[::-1]])) + "Z"
+
+
+def path(points: IntArray) -> str:
+    """Path through points (N, 2)."""
+    return "M" + " ".join(f"{_mm(x)},{_mm(y)}" for x, y in points.tolist())
+
+
+def drawn(points: FloatArray) -> IntArray:
+    """Take points (..., 2) in mm, object frame, to hundredths of a mm, y down."""
+    return np.asarray(np.rint(_PER_MM * points * [1.0, -1.0]), dtype=np.int64)
+
+
+def _film(
+    shapes: Sequence[Shape], design: Design, bar: FloatArray, theta: FloatArray, air: FloatArray
+) -> Film:
+    along = shapes[0].along
+    kept, windows = _thinned(along, design)
+    lines = np.array([[shape.facing[kept], shape.far[kept]] for shape in shapes])
+    return Film(bar, theta, air, drawn(lines), windows)
+
+
+def _thinned(along: FloatArray, design: Design) -> tuple[IntArray, IntArray]:
+    """Choose points along the tube, evenly, and the joints' edges and centres; and where these are.
+
+    Returns
+    -------
+    kept : (N,)
+        Ascending indices into ``along``.
+    windows : (n, 3)
+        Indices into ``kept``.
+    """
+    centre = np.array([joint.centre_mm for joint in design.joints])
+    half = 0.5 * np.array([joint.openF_mm for joint in design.joints])
+    marks = np.abs(along - np.stack([centre - half, centre, centre + half], 1)[..., None])
+    fixed = np.argmin(marks, axis=-1)
+    count = max(_POINTS - fixed.size, 2)  # an attempt that is no design may have many joints
+    even = np.rint(np.linspace(0, len(along) - 1, count))
+    kept = np.unique(np.concatenate([even.astype(np.int64), fixed.ravel()]))
+    return kept, np.searchsorted(kept, fixed)
+
+
+def _mm(hundredths: int) -> str:
+    """Write hundredths of a mm in mm, as JavaScript writes the same number."""
+    written = f"{hundredths / _PER_MM:.2f}"
+    return written.rstrip("0").rstrip(".")

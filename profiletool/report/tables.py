@@ -1,0 +1,190 @@
+"""The tables of the report: joints, what the tube bears, sensitivity, and where all comes from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import pi
+
+from profiletool import __version__
+from profiletool.records import Design, FeState, FloatArray, Joint, Verification
+from profiletool.report.markup import Markup, joined, pairs, short, signed, table, tag
+from profiletool.template.unroll import slit_rows, slits
+
+_NOTHING = "–"
+
+
+@dataclass(frozen=True)
+class Option:
+    """What was asked for by one option of the command, and what it is where it is not given."""
+
+    name: str
+    value: str
+    usual: str
+
+    @property
+    def changed(self) -> bool:
+        """Whether it differs from its default."""
+        return self.value != self.usual
+
+
+def joint_table(design: Design, places: FloatArray) -> Markup:
+    """Tabulate all joints; ``places`` (n,) mm along the profile."""
+    heads = (
+        "Joint", "F (mm)", "openF (mm)", "slits (rows)", "alpha closed (°)",
+        "threads uncut", "bends", "θ wanted (°)", "θ formula (°)", "θ joint response (°)",
+        "θ FE (°)", "largest stretch", "on the tube (mm)", "on the profile (mm)",
+    )  # fmt: skip
+    rows = [
+        _joint_row(joint, design, place)
+        for joint, place in zip(design.joints, places.tolist(), strict=True)
+    ]
+    said = (
+        f"Angles at {design.pressure_bar:.2f} bar, positive toward the object. Places are the "
+        "cuts' centres: along the tube from the clamped end, along the profile from its start."
+    )
+    return table(heads, rows, said)
+
+
+def slit_table(design: Design) -> Markup:
+    """Tabulate where the slits of every joint are, and what stays uncut."""
+    pitch = design.gauze.pitch_mm
+    found = slits(design.joints, design.tube, design.gauze)
+    heads = ("Joint", "x from the clamped end (mm)", "rows, per turn", "slits, all turns",
+             "threads left uncut", "on the side")  # fmt: skip
+    rows = [
+        (
+            f"{joint.number}",
+            _places(joint, pitch),
+            f"{len(slit_rows(joint, pitch))}",
+            f"{sum(slit.joint == joint.number for slit in found)}",
+            threads_uncut(joint, design),
+            "object's" if joint.sense > 0.0 else "far",
+        )
+        for joint in design.joints
+    ]
+    return table(heads, rows, "Slits of every joint")
+
+
+def pressure_table(design: Design, found: Verification) -> Markup:
+    """Tabulate the angles to expect at the pressures of finite elements."""
+    heads = ("P (bar)", *(f"θ{joint.number} (°)" for joint in design.joints), "air (ml)")
+    rows = [
+        (
+            f"{state.pressure_bar:.2f}",
+            *(signed(theta) for theta in state.theta_deg),
+            f"{state.air_ml:.1f}",
+        )
+        for state in found.states
+    ]
+    return table(heads, rows, "Angles by finite elements, positive toward the object")
+
+
+def loads(state: FeState, design: Design) -> Markup:
+    """Tell what a state of finite elements asks of rubber, gauze and air supply."""
+    stretches = list(zip(design.joints, state.joint_stretch, strict=True))
+    worst, _ = max(stretches, key=lambda pair: pair[1])
+    rows = [
+        ("Air, beyond that at rest", f"{state.air_ml:.1f} ml"),
+        ("Rubber, largest stretch", f"{state.largest_stretch:.2f}, at joint {worst.number}"),
+        ("Rubber, by joint", ", ".join(f"{joint.number}: {most:.2f}" for joint, most in stretches)),
+        ("Rubber, least volume ratio J", f"{state.least_J:.3f}"),
+        ("Thread, largest force", f"{state.thread_N:.1f} N"),
+        ("Gauze, slack axial threads", f"{100.0 * state.slack_share:.0f} % of the wrapped surface"),
+        ("Tube, touches itself", "yes; the model lets it" if state.touches else "no"),
+    ]
+    return pairs(rows)
+
+
+def sensitivity_table(design: Design) -> Markup:
+    """Tabulate what small errors of the build do to the shape."""
+    rows = [
+        (
+            row.what,
+            _NOTHING if row.joint is None else f"joint {row.joint}",
+            f"{row.rms_mm:.2f}",
+            f"{row.max_mm:.2f}",
+        )
+        for row in design.sensitivity
+    ]
+    heads = ("What is off", "worst at", "RMS (mm)", "at most (mm)")
+    said = "How far the object-facing line under pressure moves, to first order, where this is off"
+    return table(heads, rows, said)
+
+
+def threads_uncut(joint: Joint, design: Design) -> str:
+    """Say how many axial threads a joint keeps around the tube."""
+    width = pi * design.tube.outer_diameter_mm * joint.alpha_closed_deg / 360.0
+    return short(width / design.gauze.pitch_mm)
+
+
+def provenance(design: Design, found: Verification | None, options: Sequence[Option]) -> Markup:
+    """Tell what the design was made from, and how."""
+    source, formula = design.source, design.formula
+    scale = "in mm already" if source.mm_per_px is None else f"{source.mm_per_px:.6g} mm per pixel"
+    rows: list[tuple[str, str]] = [
+        ("Input", tag("bdi", source.file)),
+        ("SHA-256 of the input", tag("code", source.sha256)),
+        ("Scale", f"{scale}, from {source.scale_source}"),
+        (
+            "Profile",
+            f"{source.side} side, {source.profile_length_mm:.1f} mm, "
+            f"{100.0 * source.bridged_share:.0f} % of it bridged",
+        ),
+        ("Formula", tag("bdi", formula.name)),
+        ("SHA-256 of the formula", tag("code", formula.sha256)),
+        ("Mesh", _mesh(found)),
+        ("Made by", f"profiletool {__version__}"),
+    ]
+    asked = [
+        (
+            tag("code", option.name),
+            tag("strong", option.value) if option.changed else option.value,
+            option.usual,
+        )
+        for option in options
+    ]
+    heads = ("Option", "asked", "default")
+    return joined((pairs(rows), table(heads, asked, "What was asked for", "words")))
+
+
+def _joint_row(joint: Joint, design: Design, place: float) -> tuple[str, ...]:
+    gauze = design.gauze
+    return (
+        f"{joint.number}",
+        f"{joint.F_mm:.1f}",
+        f"{joint.openF_mm:g}",
+        f"{len(slit_rows(joint, gauze.pitch_mm))}",
+        f"{joint.alpha_closed_deg:.1f}",
+        threads_uncut(joint, design),
+        f"{'toward' if joint.sense > 0.0 else 'away'} ({joint.alpha_center_deg:g}°)",
+        *(
+            _NOTHING if theta is None else signed(joint.sense * theta)
+            for theta in (
+                joint.theta_target_deg,
+                joint.theta_formula_deg,
+                joint.theta_response_deg,
+                joint.theta_fe_deg,
+            )
+        ),
+        _NOTHING if joint.stretch_fe is None else f"{joint.stretch_fe:.2f}",
+        f"{joint.centre_mm:.1f}",
+        f"{place:.1f}",
+    )
+
+
+def _mesh(found: Verification | None) -> str:
+    if found is None:
+        return "no finite elements were run"
+    return (
+        f"{found.elements} elements, {found.nodes} nodes, {found.dofs} unknowns; "
+        f"{found.newton_iterations} Newton iterations"
+    )
+
+
+def _places(joint: Joint, pitch_mm: float) -> str:
+    """Say where a joint's rows of slits are along the tube."""
+    rows = slit_rows(joint, pitch_mm)
+    if len(rows) == 1:
+        return short(rows[0])
+    return f"{short(rows[0])} to {short(rows[-1])}, every {pitch_mm:g}"

@@ -1,0 +1,266 @@
+"""The mounting drawing's side view: object, tube, clamp and palm in the object frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from profiletool.profile.side import top_middle
+from profiletool.profile.symmetry import Symmetry
+from profiletool.records import Design, FloatArray, Profile, Shape
+from profiletool.template.callouts import Callout
+from profiletool.template.draughting import (
+    CHAIN,
+    DASHES,
+    dashed,
+    dimension,
+    geometry_of,
+    measure,
+    pieces,
+    smooth,
+)
+from profiletool.template.drawing import Box, Line, Text, arrow, circle, polyline
+from profiletool.template.palm import Clamp, Palm
+
+PLATE_MM = 5.0  # the palm is drawn so thick; whatever is stiff will do
+COLUMN_MM = 8.0  # from a view to its dimensions, and from one row of them to the next
+_OFF_OUTLINE_MM, _LEAST_OFF_MM = 0.3, 2.0  # the profile is drawn where it is so far off so long
+_TICK_MM = 2.0
+_PAST_MM = 12.0  # the centre line beyond the clamp
+_LENGTH_OFF_MM = PLATE_MM + 4.0  # the clamp's dimension, off the far line
+_VIEW_ARROW_MM = (PLATE_MM + 12.0, PLATE_MM + 2.0)  # off the palm's near face, from and to
+_VIEW_LETTER_MM = 3.5
+_BASE_MM = 0.5  # a base nearer to the datum is lettered only
+_LEVEL_DEG = 3.0  # so is a slope below this
+_ARC_MM = 15.0
+
+
+@dataclass(frozen=True)
+class View:
+    """One view of the drawing, its callouts not lettered yet."""
+
+    lines: tuple[Line, ...]
+    texts: tuple[Text, ...]
+    callouts: tuple[Callout, ...]
+
+
+@dataclass(frozen=True)
+class Mounted:
+    """What the drawing shows: a design, its tube at rest and under pressure, clamp and palm.
+
+    ``symmetry`` is the outline's, where there is one.
+    """
+
+    design: Design
+    profile: Profile
+    straight: Shape
+    bent: Shape
+    symmetry: Symmetry | None
+    clamp: Clamp
+    palm: Palm
+
+    @property
+    def datum(self) -> FloatArray:
+        """What the base is measured from, (2,): the object's top middle, or the profile's top."""
+        outline = self.profile.outline
+        return self.profile.points[0] if outline is None else top_middle(outline)
+
+    @property
+    def body(self) -> FloatArray:
+        """The object's outline, or the profile that was drawn instead, (N, 2)."""
+        outline = self.profile.outline
+        return self.profile.points if outline is None else outline
+
+
+def side_view(mounted: Mounted) -> View:
+    """Return the side view in the object frame, with the dimensions around it."""
+    shapes = _shapes(mounted)
+    lines, texts = _dimensions(mounted, bounds(shapes))
+    angle, heading = _slope(mounted)
+    view_arrow, letter = _view_arrow(mounted.palm)
+    return View(
+        (*shapes, *_clamp_dimensions(mounted.clamp), *lines, *angle, *view_arrow),
+        texts,
+        (letter, *_callouts(mounted), heading),
+    )
+
+
+def bounds(lines: tuple[Line, ...]) -> Box:
+    """Return x min, y min, x max, y max of all lines, mm."""
+    points = np.concatenate([line.points for line in lines])
+    (x0, y0), (x1, y1) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+    return x0, y0, x1, y1
+
+
+def plates_of(palm: Palm) -> tuple[FloatArray, ...]:
+    """Return the palm in the side view, (4, 2) mm; in two pieces where it has an opening."""
+    (low, high), hole = palm.reach_mm, palm.opening_mm
+    spans = ((low, -hole), (hole, high)) if hole else ((low, high),)
+    return tuple(
+        np.array([palm.at(*p) for p in ((a, 0.0), (b, 0.0), (b, PLATE_MM), (a, PLATE_MM))])
+        for a, b in spans
+    )
+
+
+def _shapes(mounted: Mounted) -> tuple[Line, ...]:
+    """Return all but dimensions; of lines that run on each other the first one is to stay."""
+    clamp, profile = mounted.clamp, mounted.profile
+    middle, length = clamp.diameter_mm / 2, clamp.length_mm
+    axis = np.array([clamp.at(-_PAST_MM, middle), clamp.at(length + _PAST_MM, middle)])
+    return (
+        Line("MARK", clamp.ring, closed=True),
+        *_cut_off(mounted),
+        circle("MARK", float(clamp.start[0]), float(clamp.start[1]), 1.0),
+        *(Line("REF", plate, closed=True) for plate in plates_of(mounted.palm)),
+        smooth("REF", mounted.body, closed=profile.outline is not None),
+        smooth("REF", _beyond(mounted.bent, length)),
+        *dashed("REF", _beyond(mounted.straight, length), DASHES),
+        _profile_end(profile),
+        *(smooth("NOTE", piece) for piece in _off_outline(profile)),
+        *dashed("MARK", axis, CHAIN),
+        *_object_axis(mounted),
+    )
+
+
+def _cut_off(mounted: Mounted) -> tuple[Line, ...]:
+    """Return where the tube is to be cut shorter."""
+    clamp, cut = mounted.clamp, mounted.palm.cut_off_mm
+    ends = (-_TICK_MM, clamp.diameter_mm + _TICK_MM)
+    return (polyline("MARK", *(clamp.at(cut, end).tolist() for end in ends)),) if cut else ()
+
+
+def _beyond(shape: Shape, length: float) -> FloatArray:
+    """Return a tube's outline from the clamp around its closed end, (N, 2)."""
+    free = shape.along >= length - 1e-6
+    return np.concatenate([shape.facing[free], shape.far[free][::-1]])
+
+
+def _profile_end(profile: Profile) -> Line:
+    heading = profile.heading[-1]
+    across = _TICK_MM * np.array([-np.sin(heading), np.cos(heading)])
+    return Line("NOTE", profile.points[-1] + np.array([across, -across]))
+
+
+def _off_outline(profile: Profile) -> list[FloatArray]:
+    """Return the stretches of the profile that do not run along the outline, (N, 2) each."""
+    if profile.outline is None:
+        return []
+    ring = geometry_of(Line("REF", profile.outline, closed=True)).buffer(_OFF_OUTLINE_MM)
+    return pieces(shapely.LineString(profile.points).difference(ring), _LEAST_OFF_MM)
+
+
+def _object_axis(mounted: Mounted) -> tuple[Line, ...]:
+    symmetry = mounted.symmetry
+    if symmetry is None or not symmetry.of_revolution:
+        return ()
+    heights = np.concatenate([mounted.body, *plates_of(mounted.palm)])[:, 1]
+    ends = [heights.min() - _TICK_MM, heights.max() + _TICK_MM]
+    return dashed("REF", np.array([[symmetry.axis_x_mm, y] for y in ends]), CHAIN)
+
+
+def _clamp_dimensions(clamp: Clamp) -> tuple[Line, ...]:
+    """Return the dimension lines of clamp and tube, to be lettered by callouts."""
+    across = clamp.diameter_mm
+    near, end = clamp.at(0.0, across), clamp.at(clamp.length_mm, across)
+    return (
+        *measure(near, end, _LENGTH_OFF_MM * clamp.outward),
+        *measure(clamp.at(0.0, 0.0), near, -COLUMN_MM * clamp.along),
+    )
+
+
+def _dimensions(mounted: Mounted, box: Box) -> tuple[tuple[Line, ...], tuple[Text, ...]]:
+    """Return the object's size and the base's place, outside ``box``."""
+    x0, y0, x1, y1 = box
+    body, base, datum = mounted.body, mounted.clamp.start, mounted.datum
+    left, low = (body[k] for k in body.argmin(axis=0))
+    right, high = (body[k] for k in body.argmax(axis=0))
+    # Upright ones stand where no tube is.
+    free, way = (x1, 1.0) if mounted.clamp.side < 0 else (x0, -1.0)
+    parts = [
+        dimension(left, right, y0 - COLUMN_MM, what="width "),
+        dimension(low, high, free + 2 * way * COLUMN_MM, upright=True, what="height "),
+    ]
+    dx, dy = np.abs(base - datum)
+    if dx >= _BASE_MM:
+        top = y1 + 2 * COLUMN_MM
+        parts.append(dimension(datum, base, top, what="base x ", backward=way < 0.0))
+    if dy >= _BASE_MM:
+        parts.append(dimension(datum, base, free + way * COLUMN_MM, upright=True, what="base y "))
+    return (
+        tuple(line for lines, _ in parts for line in lines),
+        tuple(text for _, texts in parts for text in texts),
+    )
+
+
+def _slope(mounted: Mounted) -> tuple[tuple[Line, ...], Callout]:
+    """Return the angle between the clamped tube and the horizontal, drawn where it is one."""
+    clamp, slope = mounted.clamp, mounted.clamp.slope_deg
+    heading = f"heading {mounted.design.base_pose.heading_deg:.1f}°"
+    middle = clamp.diameter_mm / 2
+    if abs(slope) < _LEVEL_DEG:
+        way = "below" if slope > 0 else "above"
+        level = "horizontal" if round(slope, 1) == 0.0 else f"{abs(slope):.1f}° {way} horizontal"
+        return (), Callout(f"{heading}: {level}", clamp.at(-_PAST_MM, middle), _deg(-clamp.along))
+    vertex = clamp.at(0.0, middle)
+    turns = np.radians(np.linspace(0.0, slope, 2 + int(abs(slope) / 2.0)))
+    arc = vertex + _ARC_MM * np.column_stack([clamp.side * np.cos(turns), -np.sin(turns)])
+    level = vertex + np.array([clamp.side * (_ARC_MM + _TICK_MM), 0.0])
+    words = f"{abs(slope):.1f}° to the horizontal ({heading})"
+    lines = Line("NOTE", arc), Line("NOTE", np.array([vertex, level]))
+    return lines, Callout(words, arc[len(arc) // 2], _deg(clamp.outward))
+
+
+def _view_arrow(palm: Palm) -> tuple[tuple[Line, ...], Callout]:
+    """Return the arrow along which the plan is seen."""
+    # Beside the palm, where no dimension runs.
+    tail, tip = (palm.at(palm.reach_mm[1] + 2 * _TICK_MM, off) for off in _VIEW_ARROW_MM)
+    letter = Callout("A", tail, _deg(palm.normal), leader=False, height=_VIEW_LETTER_MM)
+    return arrow("NOTE", tail, tip), letter
+
+
+def _callouts(mounted: Mounted) -> tuple[Callout, ...]:
+    clamp, palm, bent = mounted.clamp, mounted.palm, mounted.bent
+    across, base = clamp.diameter_mm, clamp.start
+    free, outward, backward = (
+        _deg(way) for way in ([-clamp.side, 0.0], clamp.outward, -clamp.along)
+    )
+    at_rest = mounted.straight.far[-len(mounted.straight.far) // 4]
+    found = [
+        Callout(
+            f"clamp {clamp.length_mm:.1f}",
+            clamp.at(clamp.length_mm / 2, across + _LENGTH_OFF_MM),
+            outward,
+        ),
+        Callout(f"tube D {across:.1f}", clamp.at(-COLUMN_MM, 0.7 * across), backward),
+        Callout(
+            f"base point: x {_number(base[0])}, y {_number(base[1])}",
+            base,
+            free + 20.0 * clamp.side,
+        ),
+        Callout("air fitting here: keep clear", clamp.at(0.0, 0.3 * across), backward),
+        Callout(
+            f"tube at {mounted.design.pressure_bar:.2f} bar",
+            bent.far[len(bent.far) // 2],
+            180.0 - free,
+        ),
+        Callout("tube at rest", at_rest, outward),
+        Callout("profile ends", mounted.profile.points[-1], 180.0 - free),
+    ]
+    if palm.cut_off_mm:
+        at = clamp.at(palm.cut_off_mm, -_TICK_MM)
+        found.append(Callout(f"cut off here: {palm.cut_off_mm:.1f}", at, _deg(-clamp.outward)))
+    beside = max(_off_outline(mounted.profile), key=len, default=None)
+    if beside is not None:
+        found.append(Callout("profile", beside[len(beside) // 2], 180.0 - free))
+    return tuple(found)
+
+
+def _deg(way: FloatArray | list[float]) -> float:
+    """Return the direction of a vector (2,), counter-clockwise from x."""
+    return float(np.degrees(np.arctan2(way[1], way[0])))
+
+
+def _number(value: float) -> str:
+    return f"{round(float(value), 1) + 0.0:.1f}"
