@@ -8,7 +8,9 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from xml.etree import ElementTree
 
+import meshio
 import numpy as np
 import pytest
 from PIL import Image, ImageDraw
@@ -44,7 +46,9 @@ def test_the_main_job(samples: Path, tmp_path: Path) -> None:
     assert result.exit_code == 0, result.stderr
     out = tmp_path / "bulb_design"
     names = {"design.json", "template.dxf", "template.svg", "overlay.png", "mask.png", "shape.csv"}
-    names |= {"theta_vs_pressure.csv", "theta_vs_pressure.png", "actuator.vtu"}
+    names |= {"template.pdf", "mounting.dxf", "mounting.pdf", "report.html", "error_along_arc.png"}
+    names |= {"theta_vs_pressure.csv", "theta_vs_pressure.png", "actuator.vtu", "actuator.pvd"}
+    names |= {f"actuator_{k:02d}.vtu" for k in range(11)}
     assert {path.name for path in out.iterdir()} == names
     design = json.loads((out / "design.json").read_text())
     away = [j["number"] for j in design["joints"] if j["alpha_center_deg"] == 90]
@@ -63,15 +67,32 @@ def test_the_main_job(samples: Path, tmp_path: Path) -> None:
     assert curves == {"curve", "target", "formula", "fe"}
     assert design["source"]["scale_source"] == "resolution"
     assert result.stdout.splitlines()[1].split()[:3] == ["joint", "F", "mm"]
+    check_series(out)
     with Image.open(out / "overlay.png") as overlay:
         assert min(overlay.size) > 900
+
+
+def check_series(folder: Path) -> None:
+    """The series holds a mesh for every pressure of the table, and rest; the last one is both."""
+    rows = list(csv.DictReader((folder / "theta_vs_pressure.csv").open()))
+    pressures = [0.0, *(float(row["pressure_bar"]) for row in rows)]
+    sets = list(ElementTree.parse(folder / "actuator.pvd").iter("DataSet"))
+    assert [float(one.get("timestep", "")) for one in sets] == pytest.approx(pressures, rel=1e-3)
+    moved = [meshio.read(folder / one.get("file", "")).point_data["displacement"] for one in sets]
+    largest = [float(np.linalg.norm(u, axis=1).max()) for u in moved]
+    assert largest[0] == 0.0
+    assert largest == sorted(largest)
+    last = (folder / sets[-1].get("file", "")).read_bytes()
+    assert (folder / "actuator.vtu").read_bytes() == last
 
 
 def test_same_input_same_bytes(samples: Path, tmp_path: Path) -> None:
     for name in ("a", "b"):
         assert unverified(samples / "egg.png", "--out", name).exit_code == 0
-    for file in ("design.json", "template.dxf", "template.svg", "shape.csv"):
-        assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes()
+    files = sorted(path.name for path in (tmp_path / "a").iterdir())
+    assert {"report.html", "template.pdf", "mounting.dxf", "overlay.png"} <= set(files)
+    for file in files:
+        assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes(), file
 
 
 def test_json_on_stdout_is_the_file(samples: Path, tmp_path: Path) -> None:

@@ -172,4 +172,5 @@ def _heading(profile: Profile, s: FloatArray) -> FloatArray:
 
 def _other(choice: Choice) -> str:
     count = len(choice.chain.openF)
-    return f"no other choice of joints comes nearer than these {count} by enough to be worth it"
+    these = "this one" if count == 1 else f"these {count}"
+    return f"no other choice of joints comes nearer than {these} by enough to be worth it"

@@ -266,7 +266,8 @@ def _draw_panel(axes: Any, scene: Scene) -> None:
     axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0))
     axes.set_axis_off()
     y = 0.955
-    axes.text(0.03, y, _short(design.source.file, 30), fontsize=15, weight="bold", color=INK)
+    name = _short(design.source.file, 30)
+    axes.text(0.03, y, name, fontsize=15, weight="bold", color=INK, parse_math=False)
     for text, colour in _status(design):
         y -= 0.032
         axes.text(0.03, y, text, fontsize=10.5, weight="bold", color=colour)
