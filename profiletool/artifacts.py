@@ -20,6 +20,7 @@ from profiletool.report.plots import Mark, theta_figure, trajectories_figure
 from profiletool.report.tradeoff import trade_off_csv, trade_off_figure
 from profiletool.report.vtu import write_pvd, write_vtu
 from profiletool.template.dxf import Version, write_dxf
+from profiletool.template.fingers import NoClamp
 from profiletool.template.kinds import Wish
 from profiletool.template.layout import build_sheet
 from profiletool.template.mounting import mounting_drawing
@@ -163,10 +164,19 @@ def template_files(
 
 
 def mounting_files(result: Result, scene: Scene, paper: Paper = "a4") -> dict[str, bytes]:
-    """Draw how the tube is clamped beside its object, and the palm that is drilled for it."""
+    """Draw how the tube is clamped beside its object, and the palm that is drilled for it.
+
+    No files where the first cut leaves nothing to clamp.
+    """
     bent = scene.bent if scene.fe is None else scene.fe
-    drawing = mounting_drawing(result.design, result.subject.profile, scene.straight, bent)
-    return {"mounting.dxf": write_dxf(drawing), "mounting.pdf": write_pdf(drawing, paper)}
+    try:
+        drawing = mounting_drawing(result.design, result.subject.profile, scene.straight, bent)
+    except NoClamp:
+        return {}
+    return {
+        "mounting.dxf": write_dxf(drawing),
+        "mounting.pdf": write_pdf(drawing, paper, drawing.parts),
+    }
 
 
 def scene_of(result: Result) -> Scene:

@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
 from shapely import STRtree
 
 from profiletool.records import FloatArray
-from profiletool.template.draughting import (
-    LETTER_MM,
-    ON_EACH_OTHER_MM,
-    geometry_of,
-    runs_on,
-)
+from profiletool.template.draughting import LETTER_MM, geometry_of, runs_on
 from profiletool.template.drawing import Line, Text, arrow
 
 # Where the words may stand, seen from what they point at: mm away, deg off the wanted direction.
@@ -25,6 +20,7 @@ _TURNS = (0, 10, -10, 20, -20, 35, -35, 50, -50, 70, -70, 90, -90, 120, -120, 15
 _DEGREE_MM = 0.1  # a degree off the wanted direction weighs as much as this distance
 _CROSSED_MM = 4.0  # so does a line that the leader crosses
 _LAST_RESORT_MM = 1e3  # and so does a leader through lettering, or along a line
+_BESIDE_MM, _ALONG_MM = 0.3, 3.0  # a leader is along a line that it is so close to for so long
 _CLEAR_MM, _APART_MM = 0.8, 2.0  # lettering from lines, and from other lettering
 _HEAD_MM = 1.5
 
@@ -83,13 +79,7 @@ def lettered(
 
 
 def _best(callout: Callout, paths: STRtree, boxes: STRtree) -> _Place:
-    """Return the cheapest clear place.
-
-    Raises
-    ------
-    ValueError
-        There is none.
-    """
+    """Return the cheapest clear place; where there is none, the nearest to what is wanted."""
     options = sorted(
         (away + _DEGREE_MM * abs(turn), away, turn)
         for away in (_AWAY if callout.leader else (*_CLOSE, *_AWAY))
@@ -103,7 +93,8 @@ def _best(callout: Callout, paths: STRtree, boxes: STRtree) -> _Place:
         if place is not None and (best is None or place.cost < best.cost):
             best = place
     if best is None:
-        raise ValueError(f"no room for the words {callout.text!r}")
+        _, away, turn = options[0]
+        return _at(callout, away, turn)
     return best
 
 
@@ -111,21 +102,27 @@ def _place(
     callout: Callout, away: float, turn: float, paths: STRtree, boxes: STRtree
 ) -> _Place | None:
     """Return a place at some distance and direction, None where the words would not be clear."""
-    angle = np.radians(callout.toward_deg + turn)
-    end = callout.at + away * np.array([np.cos(angle), np.sin(angle)])
-    text = _words(callout, end)
-    box = shapely.box(*text.box)
+    place = _at(callout, away, turn)
+    end, cost = place.end, place.cost
+    box = shapely.box(*place.text.box)
     if _near(box, boxes, _APART_MM) or _near(box, paths, _CLEAR_MM):
         return None
-    cost = away + _DEGREE_MM * abs(turn)
     if callout.leader:
         shaft = shapely.LineString([end, callout.at])
-        near = paths.query(shaft, "dwithin", distance=ON_EACH_OTHER_MM)
-        crossed = paths.geometries.take(near)
-        cost += _CROSSED_MM * len(crossed)
-        if _near(shaft, boxes, _CLEAR_MM) or any(runs_on(shaft, path) for path in crossed):
+        near = paths.geometries.take(paths.query(shaft, "dwithin", distance=_BESIDE_MM))
+        cost += _CROSSED_MM * len(near)
+        along = any(
+            runs_on(shaft, path) or runs_on(shaft, path, _BESIDE_MM, _ALONG_MM) for path in near
+        )
+        if along or _near(shaft, boxes, _CLEAR_MM):
             cost += _LAST_RESORT_MM
-    return _Place(text, end, cost)
+    return replace(place, cost=cost)
+
+
+def _at(callout: Callout, away: float, turn: float) -> _Place:
+    angle = np.radians(callout.toward_deg + turn)
+    end = callout.at + away * np.array([np.cos(angle), np.sin(angle)])
+    return _Place(_words(callout, end), end, away + _DEGREE_MM * abs(turn))
 
 
 def _near(what: shapely.Geometry, others: STRtree, within: float) -> bool:

@@ -130,11 +130,19 @@ def no_line_twice(lines: Iterable[Line]) -> tuple[Line, ...]:
     return tuple(line for line, _ in kept)
 
 
-def runs_on(line: shapely.Geometry, other: shapely.Geometry) -> bool:
-    """Tell whether a line shares more with another one than where they cross."""
-    if line.distance(other) > ON_EACH_OTHER_MM:
+def runs_on(
+    line: shapely.Geometry,
+    other: shapely.Geometry,
+    within: float = ON_EACH_OTHER_MM,
+    least: float = _CROSSING_MM,
+) -> bool:
+    """Tell whether a line keeps ``within`` another one for longer than ``least``, mm.
+
+    As given, for longer than where they merely cross.
+    """
+    if line.distance(other) > within:
         return False
-    return bool(line.intersection(_cover(other)).length > _CROSSING_MM)
+    return bool(line.intersection(_cover(other, within)).length > least)
 
 
 def geometry_of(line: Line) -> shapely.LineString:
@@ -150,8 +158,8 @@ def pieces(found: shapely.Geometry, least: float = _DOT_MM) -> list[FloatArray]:
     return [np.asarray(shapely.get_coordinates(part)) for part in parts]
 
 
-def _cover(line: shapely.Geometry) -> shapely.Geometry:
-    return line.buffer(ON_EACH_OTHER_MM, cap_style="flat")
+def _cover(line: shapely.Geometry, within: float = ON_EACH_OTHER_MM) -> shapely.Geometry:
+    return line.buffer(within, cap_style="flat")
 
 
 def _thinned(line: shapely.LineString) -> FloatArray:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import shapely
 
@@ -20,10 +22,18 @@ TITLE = "Mounting"
 LEAST_WIDTH_MM = 150.0
 BLOCK_MM = 8.0  # from block to block
 _INCLINED_DEG = 0.5  # clamps less inclined than this lie on the palm
+_SAME_MM = 1e-6
 _OVERLAP_MM2 = 1.0  # what shapes that only touch may share
 
 
-def mounting_drawing(design: Design, profile: Profile, straight: Shape, bent: Shape) -> Drawing:
+@dataclass(frozen=True)
+class Mounting(Drawing):
+    """The mounting drawing, and its two views, for a page each."""
+
+    parts: tuple[Drawing, Drawing]
+
+
+def mounting_drawing(design: Design, profile: Profile, straight: Shape, bent: Shape) -> Mounting:
     """Return the drawing by which a palm is drilled, at true scale.
 
     Parameters
@@ -36,12 +46,12 @@ def mounting_drawing(design: Design, profile: Profile, straight: Shape, bent: Sh
 
     Returns
     -------
-    Drawing
+    Mounting
         mm; the side view in the object frame, the palm's plan below it.
 
     Raises
     ------
-    ValueError
+    NoClamp
         The first joint's cut leaves no root to clamp.
     """
     clamp = clamp_of(design, profile, straight)
@@ -56,8 +66,10 @@ def mounting_drawing(design: Design, profile: Profile, straight: Shape, bent: Sh
     plan = plan_view(mounted, place)
     lines = no_line_twice((*plan.lines, *side.lines))
     texts = (*plan.texts, *side.texts)
-    called, words = lettered((*side.callouts, *plan.callouts), lines, texts)
-    left, low, right, high = Drawing("", (*lines, *called), (*texts, *words)).bounds
+    called, words = lettered(side.callouts, lines, texts)
+    palm_called, palm_words = lettered(plan.callouts, (*lines, *called), (*texts, *words))
+    everything = Drawing("", (*lines, *called, *palm_called), (*texts, *words, *palm_words))
+    left, low, right, high = everything.bounds
     bar, name = scale_bar(left, low - BLOCK_MM)
     facts = [*_facts(mounted), *(f"! {warning}" for warning in _warnings(mounted))]
     block = title_block(
@@ -65,7 +77,15 @@ def mounting_drawing(design: Design, profile: Profile, straight: Shape, bent: Sh
         facts,
         (left, max(right, left + LEAST_WIDTH_MM), high + BLOCK_MM),
     )
-    return Drawing(title_of(design, TITLE), (*lines, *called, *bar), (*texts, *words, name, *block))
+    title = title_of(design, TITLE)
+    beside = tuple(line for line in lines if line.points[:, 1].min() >= bottom - _SAME_MM)
+    below = tuple(line for line in lines if line.points[:, 1].min() < bottom - _SAME_MM)
+    views = (
+        Drawing(title, (*beside, *called), (*side.texts, *words, *block)),
+        Drawing(title, (*below, *palm_called, *bar), (*plan.texts, *palm_words, name)),
+    )
+    drawn = (*views[0].drawn, *views[1].drawn)
+    return Mounting(title, drawn, (*views[0].texts, *views[1].texts), views)
 
 
 def _facts(mounted: Mounted) -> list[str]:

@@ -70,11 +70,22 @@ def wave():
     return np.column_stack([25.0 + 4.0 * np.sin(y / 15.0) - 0.2 * y, 12.0 + y])
 
 
-def case(body, side="left", start=0.0, root=10.0, clearance=0.0, D=2 * R, closed=True, away=False):
-    """A design along a body, with the tube at rest and bent, and its profile."""
+def case(
+    body,
+    side="left",
+    start=0.0,
+    root=10.0,
+    clearance=0.0,
+    D=2 * R,
+    closed=True,
+    away=False,
+    back=0.0,
+):
+    """A design along a body, its profile, the tube at rest and bent; its base moved ``back``."""
     reach = Reach(side, D / 2, clearance_mm=clearance, start_pct=start)
     profile = profile_of_object(body, reach) if closed else profile_of_line(body, reach)
-    x, y = profile.points[0]
+    way = np.array([np.cos(profile.heading[0]), np.sin(profile.heading[0])])
+    x, y = profile.points[0] - back * way
     pose = Pose(float(x), float(y), float(np.degrees(profile.heading[0])))
     joints = row_of_joints([(20, 8, 120, 90 if away else 270, 30)] * 3, root)
     design = design_of(joints, root + 60.0, "thing.png")
@@ -96,6 +107,8 @@ CASES = {
     "three around a neck": lambda: case(bottle(), start=25.0),
     "two": lambda: case(drum(), root=14.0),
     "one on a ball": lambda: case(ball(), root=8.0),
+    "one thin to the right": lambda: case(ball(30.0), "right", root=8.0, D=8.0),
+    "one from beyond the axis": lambda: case(ball(), root=24.0, back=18.0),
     "one beside a handle": lambda: case(mug(), root=30.0),
     "one on a line": lambda: case(wave(), closed=False),
     "one on the right of a line": lambda: case(wave(), "right", closed=False, away=True),
@@ -112,6 +125,11 @@ def made(name):
 @cache
 def drawing_of(name) -> Drawing:
     return mounting_drawing(*made(name))
+
+
+@cache
+def dxf_of(name):
+    return write_dxf(drawing_of(name))
 
 
 def on(drawing, layer, closed=True):
@@ -143,7 +161,7 @@ def said(drawing):
 @every_case
 def test_dxf_reads_back(name):
     drawing = drawing_of(name)
-    doc, auditor = recover.read(io.BytesIO(write_dxf(drawing)))
+    doc, auditor = recover.read(io.BytesIO(dxf_of(name)))
     assert not auditor.has_errors
     assert not auditor.has_fixes
     assert doc.header["$INSUNITS"] == 4
@@ -160,7 +178,7 @@ def test_dxf_reads_back(name):
 
 @every_case
 def test_the_same_design_gives_the_same_bytes(name):
-    assert write_dxf(drawing_of(name)) == write_dxf(mounting_drawing(*made(name)))
+    assert dxf_of(name) == write_dxf(mounting_drawing(*made(name)))
 
 
 @every_case
@@ -335,6 +353,22 @@ def test_a_handle_leaves_one_finger_on_a_rectangle():
     assert "Not taken for a body of revolution" in said(drawing)
     assert "width 110.0" in said(drawing)
     assert "height 90.0" in said(drawing)
+
+
+def test_places_on_one_finger_s_palm_are_measured_from_the_axis():
+    """Held from 18 mm beyond the axis to 2 mm on this side of it."""
+    drawing = drawing_of("one from beyond the axis")
+    _, holes, (clamp,) = plan(drawing)
+    pose = made("one from beyond the axis")[0].base_pose
+    assert 17.5 < pose.x_mm < 18.0
+    # On the palm's face, where the far line begins.
+    end = pose.x_mm + 20.0 * np.sin(np.radians(pose.heading_deg))
+    np.testing.assert_allclose(np.sort(clamp[:, 0])[[0, -1]], [end - 20, end], atol=0.01)
+    assert [m[0] for m, _ in holes] == pytest.approx([end - 10.0] * 2, abs=0.01)
+    assert f"1:  x {end - 10:.1f},  y -16.0 2:  x {end - 10:.1f},  y 16.0" in said(drawing)
+    assert f"0 to screws {end - 10:.1f}" in said(drawing)
+    crosses = [p for p in on(drawing, "MARK", closed=False) if np.ptp(p[:, 0]) == 0.0]
+    assert any(abs(p[0, 0]) < 0.02 and abs(np.ptp(p[:, 1]) - 8.0) < 0.1 for p in crosses)
 
 
 def test_a_drawn_line_stands_for_the_object():

@@ -197,6 +197,7 @@ DRAWINGS = {
     "small": lambda: sheet(60, 40),
     "long": lambda: sheet(250, 130, above=70),
     "large": lambda: sheet(320, 400),
+    "brim": lambda: piece(199.9, 100),
     "no room": lambda: piece(199.5, 280.5, "No room"),
     "untitled": lambda: piece(30, 20, ""),
     "alarming": lambda: sheet(320, 400, "Plate: " + "a long name " * 7 + ALARMS),
@@ -318,6 +319,12 @@ def test_bulb_is_one_page_of_a4():
     drawing = build_sheet(bulb()).drawing
     (page,) = read(write_pdf(drawing))
     assert page.size[0] < page.size[1]
+    offset_of(page, lines_of(drawing))
+
+
+def test_no_bar_rather_than_tiles():
+    drawing = piece(199.5, 280.5)
+    (page,) = read(write_pdf(drawing))
     offset_of(page, lines_of(drawing))
 
 
