@@ -69,23 +69,28 @@ def mounting_drawing(design: Design, profile: Profile, straight: Shape, bent: Sh
     called, words = lettered(side.callouts, lines, texts)
     palm_called, palm_words = lettered(plan.callouts, (*lines, *called), (*texts, *words))
     everything = Drawing("", (*lines, *called, *palm_called), (*texts, *words, *palm_words))
-    left, low, right, high = everything.bounds
+    left, low, _, _ = everything.bounds
     bar, name = scale_bar(left, low - BLOCK_MM)
     facts = [*_facts(mounted), *(f"! {warning}" for warning in _warnings(mounted))]
-    block = title_block(
-        title_lines(design, TITLE),
-        facts,
-        (left, max(right, left + LEAST_WIDTH_MM), high + BLOCK_MM),
-    )
     title = title_of(design, TITLE)
     beside = tuple(line for line in lines if line.points[:, 1].min() >= bottom - _SAME_MM)
     below = tuple(line for line in lines if line.points[:, 1].min() < bottom - _SAME_MM)
-    views = (
-        Drawing(title, (*beside, *called), (*side.texts, *words, *block)),
-        Drawing(title, (*below, *palm_called, *bar), (*plan.texts, *palm_words, name)),
-    )
-    drawn = (*views[0].drawn, *views[1].drawn)
-    return Mounting(title, drawn, (*views[0].texts, *views[1].texts), views)
+    seen = Drawing(title, (*beside, *called), (*side.texts, *words))
+    palmed = Drawing(title, (*below, *palm_called, *bar), (*plan.texts, *palm_words, name))
+
+    def headed(*views: Drawing) -> Drawing:
+        """Put the views together, under the title block."""
+        drawn = tuple(line for view in views for line in view.drawn)
+        texts = tuple(text for view in views for text in view.texts)
+        left, _, right, high = Drawing(title, drawn, texts).bounds
+        frame = left, max(right, left + LEAST_WIDTH_MM), high + BLOCK_MM
+        return Drawing(
+            title, drawn, (*texts, *title_block(title_lines(design, TITLE), facts, frame))
+        )
+
+    whole = headed(seen, palmed)
+    # The title stands with the palm: the side view takes a page as it is.
+    return Mounting(title, whole.drawn, whole.texts, (seen, headed(palmed)))
 
 
 def _facts(mounted: Mounted) -> list[str]:
