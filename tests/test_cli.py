@@ -74,7 +74,7 @@ def test_the_main_job(samples: Path, tmp_path: Path) -> None:
 
 def check_series(folder: Path) -> None:
     """The series holds a mesh for every pressure of the table, and rest; the last one is both."""
-    rows = list(csv.DictReader((folder / "theta_vs_pressure.csv").open()))
+    rows = csv.DictReader((folder / "theta_vs_pressure.csv").read_text().splitlines())
     pressures = [0.0, *(float(row["pressure_bar"]) for row in rows)]
     sets = list(ElementTree.parse(folder / "actuator.pvd").iter("DataSet"))
     assert [float(one.get("timestep", "")) for one in sets] == pytest.approx(pressures, rel=1e-3)
