@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import stat
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,7 @@ from formula.theta import COEFFICIENTS, Formula, RubberLaw, Terms, paper_terms
 
 SCHEMA, POLYNOMIAL = "profiletool.formula/1", "profiletool.formula/2"
 _ABSURD = 1e9
+_MOST_BYTES = 5_000_000
 _MOST_POWERS = 8
 
 
@@ -58,12 +60,19 @@ def read_bytes(name: str) -> bytes:
     if name in ours and not path.is_file():
         return ours[name]
     try:
-        return path.read_bytes()
-    except OSError as error:
+        if not stat.S_ISREG(path.stat().st_mode):  # a pipe would wait for ever
+            raise OSError("not a file")
+        with path.open("rb") as file:
+            data = file.read(_MOST_BYTES + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
         known = ", ".join(ours)
+        raise BadFormula(f"cannot read {path}: {reason}; by name there are {known}") from error
+    if len(data) > _MOST_BYTES:
         raise BadFormula(
-            f"cannot read {path}: {error.strerror}; by name there are {known}"
-        ) from error
+            f"{path} is larger than {_MOST_BYTES / 1e6:g} MB, too large for a formula file"
+        )
+    return data
 
 
 def read_tree(data: bytes, file: str) -> dict[str, Any]:
@@ -129,7 +138,7 @@ def campaign_of(data: bytes, file: str) -> Data | None:
     rows = campaign.get("theta_deg")
     try:
         theta = np.array(rows, dtype=float)  # null becomes NaN
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise BadFormula(f'{file}: "theta_deg" is not a table of numbers') from error
     if (
         theta.shape != (len(alpha), len(openF), len(P))

@@ -10,6 +10,7 @@ from profiletool.errors import ProfiletoolError
 from profiletool.profile.curve import arc_length
 from profiletool.profile.target import Reach, profile_of_line, profile_of_object
 from profiletool.profile.vector import SUFFIXES, load_vector
+from profiletool.reading import read_file
 from profiletool.records import Design, FloatArray
 from profiletool.report.files import read_shape_csv
 
@@ -28,12 +29,13 @@ class Target:
 def target_of(design: Design, file: Path) -> Target | None:
     """Find the target of a design read from ``file``: in its shape.csv, else in its drawing.
 
-    A drawing counts when it is the very file that the design was made from. In both cases the
+    A drawing counts when it is the very file that the design was made from, and lies in the
+    folder of ``file`` or below: a name in a file never leads out of there. In both cases the
     profile must be as long as the design says, for neither knows of options such as --from.
     """
     for name, points in (
         ("shape.csv", _tabulated(file.with_name("shape.csv"))),
-        (design.source.file, _drawn(design, file.parent / design.source.file)),
+        (design.source.file, _drawn(design, file.parent)),
     ):
         if points is None or len(points) < 2:
             continue
@@ -44,22 +46,23 @@ def target_of(design: Design, file: Path) -> Target | None:
 
 def _tabulated(path: Path) -> FloatArray | None:
     try:
-        return read_shape_csv(path.read_text(encoding="utf-8"), "target")
-    except (OSError, ValueError):
+        text = read_file(path, _MOST_BYTES, "a table").decode()
+        return read_shape_csv(text, "target")
+    except (ProfiletoolError, ValueError):
         return None
 
 
-def _drawn(design: Design, path: Path) -> FloatArray | None:
-    if path.suffix.lower() not in SUFFIXES:
-        return None
+def _drawn(design: Design, folder: Path) -> FloatArray | None:
     try:
-        if path.stat().st_size > _MOST_BYTES:
+        path = (folder / design.source.file).resolve()  # links are followed, then judged
+        if path.suffix.lower() not in SUFFIXES or not path.is_relative_to(folder.resolve()):
             return None
-        if hashlib.sha256(path.read_bytes()).hexdigest() != design.source.sha256:
+        data = read_file(path, _MOST_BYTES, "a drawing")
+        if hashlib.sha256(data).hexdigest() != design.source.sha256:
             return None
         drawn = load_vector(path)
         make = profile_of_object if drawn.closed else profile_of_line
         reach = Reach(design.source.side, 0.5 * design.tube.outer_diameter_mm)
         return make(drawn.points, reach).points
-    except (OSError, ProfiletoolError):
+    except (OSError, ValueError, RuntimeError, ProfiletoolError):  # no such place, or no profile
         return None

@@ -36,6 +36,7 @@ design_app = typer.Typer(
 )
 
 
+_MOST_CONFIG_BYTES = 20_000
 # What typer raises for words it cannot take; its own base classes have no public name.
 _BadUsage = cast(type[typer.BadParameter], typer.BadParameter.__bases__[0])
 
@@ -80,11 +81,14 @@ def _config(context: typer.Context, path: Path | None) -> Path | None:
 
 
 def _read_config(context: typer.Context, path: Path) -> dict[str, Any]:
+    from profiletool.reading import read_file
+
     try:
-        tree = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise UnreadableInput(f"cannot read {path}: {error.strerror}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        data = read_file(path, _MOST_CONFIG_BYTES, "a file of options")
+        tree = tomllib.loads(data.decode("utf-8-sig"))
+    except UnreadableInput as error:
+        raise UnreadableInput(f"cannot read {path}: {error}") from None
+    except (ValueError, RecursionError) as error:
         raise UnreadableInput(f"{path} is not TOML: {error}") from error
     names = {
         option.removeprefix("--"): parameter

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from profiletool.errors import UnreadableInput
+from profiletool.reading import read_file
 from profiletool.records import Design
 
 SCHEMA = "profiletool.design/1"
@@ -56,11 +57,9 @@ def load_design(path: Path) -> Design:
         When the file cannot be read or holds no design.
     """
     try:
-        if path.stat().st_size > _MOST_BYTES:
-            raise UnreadableInput(f"{path} is too large for a design.json")
-        data = path.read_bytes()
-    except OSError as error:
-        raise UnreadableInput(f"cannot read {path}: {error.strerror}") from error
+        data = read_file(path, _MOST_BYTES, "a design.json")
+    except UnreadableInput as error:
+        raise UnreadableInput(f"cannot read {path}: {error}") from None
     return from_json(data, path.name)
 
 

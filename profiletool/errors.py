@@ -1,5 +1,15 @@
 """One exception tree; each class knows the exit code that the command line ends with."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeAlias
+
+if TYPE_CHECKING:  # the command line answers --help without numpy
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Candidate: TypeAlias = tuple[NDArray[np.bool_], float, str]
+
 
 class ProfiletoolError(Exception):
     """A failure that the user can act on: one line says what is wrong and what to try."""
@@ -35,6 +45,20 @@ class NoObject(ProfiletoolError):
     """No usable object or profile: none found, several alike, or it runs out of the frame."""
 
     exit_code = 5
+
+
+class Unsure(NoObject):
+    """Something was found, but not for certain.
+
+    Attributes
+    ----------
+    candidates : tuple of (mask, confidence, method)
+        The best first; masks are (H, W) bool of the picture's size, confidences 0 to 1.
+    """
+
+    def __init__(self, message: str, candidates: tuple[Candidate, ...]) -> None:
+        super().__init__(message)
+        self.candidates = candidates
 
 
 class Infeasible(ProfiletoolError):

@@ -48,12 +48,15 @@ class Picture:
         The resolution stored in the file, where it means something.
     format : str
         As Pillow names it: "PNG", "JPEG", ...
+    focal_px : float or None
+        Focal length in pixels, where the file tells its 35 mm equivalent; some per cent off.
     """
 
     rgb: NDArray[np.uint8]
     alpha: NDArray[np.uint8] | None
     mm_per_px: float | None
     format: str
+    focal_px: float | None = None
 
 
 @dataclass(frozen=True)
@@ -68,11 +71,13 @@ class Silhouette:
     mask : (H, W) bool
         The object, holes filled.
     method : str
-        What found it: "alpha matte", "plain ground" or "grabcut".
+        What found it: "alpha matte", "plain ground", "grabcut", ..., or the user's own "mask".
     noise_px : float
         Standard deviation of the contour's position, normal to itself.
     touches : frozenset of {"left", "right", "top", "bottom"}
         The edges of the frame that the object runs into.
+    confidence : float
+        How far the mask deserves to be believed, 0 to 1; a matte is believed wholly.
     """
 
     contour_px: FloatArray
@@ -80,14 +85,25 @@ class Silhouette:
     method: str
     noise_px: float
     touches: frozenset[str]
+    confidence: float = 1.0
 
 
 @dataclass(frozen=True)
 class Scale:
-    """Millimetres per pixel, and where that number comes from."""
+    """Millimetres per pixel, and where that number comes from.
+
+    Attributes
+    ----------
+    mm_per_px : float
+    source : str
+    error_share : float or None
+        By how much of itself the number may be off, about two standard deviations; None where
+        nothing is known of it.
+    """
 
     mm_per_px: float
-    source: Literal["height", "width", "mm-per-px", "marker", "resolution", "vector"]
+    source: Literal["height", "width", "mm-per-px", "marker", "sheet", "resolution", "vector"]
+    error_share: float | None = None
 
 
 @dataclass(frozen=True)

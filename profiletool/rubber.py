@@ -12,6 +12,7 @@ from fem.material import PAPER_RUBBER, MooneyRivlin
 from formula.theta import RubberLaw
 from profiletool.columns import NUMBER
 from profiletool.errors import UnreadableInput, UsageError
+from profiletool.reading import read_file
 from profiletool.rubber_fit import STIFFNESSES, fit_uniaxial, read_uniaxial
 
 PAPER_NU = 0.46
@@ -186,16 +187,9 @@ def _by_constants(kind: str, text: str) -> Rubber:
 def _by_test(path: Path) -> Rubber:
     shown = _quoted(str(path))
     try:
-        if not path.is_file():
-            found = "no such file" if not path.exists() else "not a file"
-            raise UnreadableInput(f"cannot read {shown}: {found}")
-        with path.open("rb") as file:
-            data = file.read(_MOST_BYTES + 1)
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "no file has such a name"
-        raise UnreadableInput(f"cannot read {shown}: {reason}") from error
-    if len(data) > _MOST_BYTES:
-        raise UnreadableInput(f"{shown} is too large for test data; thin the points out")
+        data = read_file(path, _MOST_BYTES, "a file of test data")
+    except UnreadableInput as error:
+        raise UnreadableInput(f"cannot read {shown}: {error}") from None
     try:
         fit = fit_uniaxial(*read_uniaxial(data), PAPER_NU)
     except UnreadableInput as error:

@@ -17,6 +17,7 @@ BoolImage = NDArray[np.bool_]
 _FRAME_SHARE = 0.04  # width of the border that is looked at, of the shorter side
 _SAMPLES = 6_000
 _FLOOR_LAB = 1.5  # below this, colour differences are compression and rounding, not objects
+_LEAST_DISTANCE = 2.5
 _TUKEY = 4.0
 _DEGREE = 2  # the border alone bears no more, and a freer surface would take in a pale object
 _POWERS = [(n - k, k) for n in range(_DEGREE + 1) for k in range(n + 1)]
@@ -43,6 +44,16 @@ class Ground:
     noise: float
     scatter_lab: float
 
+    @property
+    def level(self) -> float:
+        """Distance from which on a pixel stands out."""
+        return max(_LEAST_DISTANCE, 1.3 * self.noise)
+
+    @property
+    def standing(self) -> BoolImage:
+        """What stands out, (H, W)."""
+        return self.distance > self.level
+
 
 def to_lab(rgb: NDArray[np.uint8]) -> FloatImage:
     """CIE Lab, L 0..100, of an (H, W, 3) picture."""
@@ -61,7 +72,7 @@ def fit_ground(lab: FloatImage, usable: BoolImage) -> Ground:
         False where a pixel says nothing about the ground.
     """
     height, width = lab.shape[:2]
-    border = _sampled(usable & _frame(usable.shape))
+    border = _sampled(usable & frame_of(usable.shape, _FRAME_SHARE))
     if len(border[0]) < 2 * len(_POWERS):
         border = _sampled(usable)
     colours = lab[border].astype(np.float64)
@@ -82,8 +93,9 @@ def fit_ground(lab: FloatImage, usable: BoolImage) -> Ground:
     )
 
 
-def _frame(shape: tuple[int, ...]) -> BoolImage:
-    width = max(2, round(_FRAME_SHARE * min(shape)))
+def frame_of(shape: tuple[int, ...], share: float) -> BoolImage:
+    """Mask the border of a picture, of a share of its shorter side."""
+    width = max(2, round(share * min(shape)))
     frame = np.ones(shape, bool)
     frame[width:-width, width:-width] = False
     return frame

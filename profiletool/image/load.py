@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import stat
 import struct
 import warnings
 import zlib
@@ -15,6 +14,7 @@ from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
 
 from profiletool.errors import UnreadableInput
+from profiletool.reading import check_file
 from profiletool.records import MM_PER_INCH, Picture
 
 MAX_PIXELS = 64_000_000
@@ -41,6 +41,7 @@ _DAMAGE = (
     zlib.error,
 )
 _ORIENTATION_TAG = 0x0112
+_EXIF_TAG, _FOCAL_35_TAG, _DIAGONAL_35_MM = 0x8769, 0xA405, 43.27
 _BITS_TAG, _PHOTOMETRIC_TAG, _WHITE_IS_ZERO = 258, 262, 0
 # Written by programs that know no resolution, as whole dpi or as whole pixels per metre.
 _MEANINGLESS_DPI = (72.0, 96.0)
@@ -58,7 +59,7 @@ def load_picture(path: Path) -> Picture:
     -------
     Picture
         EXIF orientation applied; 16 bit scaled to 8; the colour of transparent pixels as stored;
-        ``mm_per_px`` only from PNG and TIFF, in mm per pixel.
+        ``mm_per_px`` only from PNG and TIFF, in mm per pixel; ``focal_px`` from EXIF.
 
     Raises
     ------
@@ -77,6 +78,7 @@ def load_picture(path: Path) -> Picture:
                 rgb, alpha = _channels(path, image)
                 turn = _orientation(image)
                 mm_per_px = _stored_mm_per_px(image)
+                focal_px = _stored_focal_px(image)
                 kind = image.format or ""
         except UnidentifiedImageError:
             _refuse(path, f"not a picture that can be read{_looks_like(path)}; {_ASK_FOR}")
@@ -89,6 +91,7 @@ def load_picture(path: Path) -> Picture:
         alpha=None if alpha is None else _upright(alpha, turn),
         mm_per_px=mm_per_px,
         format=kind,
+        focal_px=focal_px,
     )
 
 
@@ -102,23 +105,11 @@ def _refuse_size(path: Path) -> NoReturn:
 
 def _check_file(path: Path) -> None:
     try:
-        status = path.stat()
-        if stat.S_ISDIR(status.st_mode):
-            _refuse(path, "a folder; name a picture file")
-        if not stat.S_ISREG(status.st_mode):
-            _refuse(path, "not a regular file; name a picture file")
-        with path.open("rb"):
-            pass
-    except FileNotFoundError:
-        _refuse(path, "no such file; check the name")
-    except PermissionError:
-        _refuse(path, "no permission to read it; change its permissions or copy it")
-    except (OSError, ValueError) as error:
-        _refuse(path, f"cannot be opened ({error}); check the name")
-    if status.st_size == 0:
+        check_file(path, MAX_BYTES, "a picture")
+    except UnreadableInput as error:
+        _refuse(path, str(error))
+    if path.stat().st_size == 0:
         _refuse(path, "the file is empty; export the picture again")
-    if status.st_size > MAX_BYTES:
-        _refuse(path, f"larger than {MAX_BYTES // 1_000_000} MB; scale or compress the picture")
 
 
 def _check_size(path: Path, image: Image.Image) -> None:
@@ -211,3 +202,14 @@ def _stored_mm_per_px(image: Image.Image) -> float | None:
     if any(abs(x_dpi - dpi) < 0.5 for dpi in _MEANINGLESS_DPI):
         return None
     return MM_PER_INCH / x_dpi
+
+
+def _stored_focal_px(image: Image.Image) -> float | None:
+    """Focal length in pixels from its 35 mm equivalent, which refers to the picture's diagonal."""
+    try:
+        equivalent = float(image.getexif().get_ifd(_EXIF_TAG).get(_FOCAL_35_TAG, 0.0))
+    except _DAMAGE:
+        return None
+    if not (math.isfinite(equivalent) and equivalent > 0.0):
+        return None
+    return equivalent / _DIAGONAL_35_MM * math.hypot(*image.size)

@@ -56,6 +56,11 @@ def connected_to(seeds: BoolImage, mask: BoolImage) -> BoolImage:
     return np.asarray(kept[labels])
 
 
+def overlap(one: BoolImage, other: BoolImage) -> float:
+    """Area in common over the area of both together; 0 for two empty masks."""
+    return float((one & other).sum() / max(int((one | other).sum()), 1))
+
+
 def edges_touched(mask: BoolImage) -> frozenset[str]:
     """Name the frame edges that a region reaches."""
     sides = {"top": mask[0], "bottom": mask[-1], "left": mask[:, 0], "right": mask[:, -1]}

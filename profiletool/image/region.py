@@ -12,23 +12,35 @@ from numpy.typing import NDArray
 from profiletool.errors import NoObject
 from profiletool.image.ground import BoolImage, FloatImage, Ground
 from profiletool.image.masks import connected_to, edges_touched, fill_holes, window_of
-from profiletool.image.shadow import edge_strength, refuse_faded, without_shadow
+from profiletool.image.shadow import without_shadow
 
-_ADVICE = "photograph one object on a plain ground of another colour"
+ADVICE = "photograph one object on a plain ground of another colour"
 _MIN_SHARE = 2e-3  # of the frame: smaller regions are specks
-_ALIKE = 0.4  # a second region of this part of the largest's area is another object
+ALIKE = 0.4  # a second region of this part of the largest's area is another object
 _FULL_EDGE = 0.9  # a region along this much of a frame edge is ground
 _WHOLE_FRAME = 0.95
 _FAINT_RIM = 0.015  # widest gap in a rim, half of it, of the object's size
 
+Point = tuple[float, float]  # x, y
 
-def choose_object(mask: BoolImage) -> BoolImage:
+
+class SeveralAlike(NoObject):
+    """Several objects alike; ``regions`` are their masks, (H, W) bool."""
+
+    def __init__(self, regions: list[BoolImage]) -> None:
+        super().__init__(f"{len(regions)} objects alike in the picture; {ADVICE}")
+        self.regions = regions
+
+
+def choose_object(mask: BoolImage, point: Point | None = None) -> BoolImage:
     """Choose the one object among the regions of a mask, and fill its holes.
 
     Parameters
     ----------
     mask : (H, W)
         Everything that is not ground.
+    point : (x, y), or None
+        Pixels; the object is the region that holds it.
 
     Raises
     ------
@@ -36,10 +48,10 @@ def choose_object(mask: BoolImage) -> BoolImage:
         There is none, there are several alike, or it covers the whole frame.
     """
     if mask.mean() > _WHOLE_FRAME:
-        raise NoObject(
-            f"the object covers the whole picture; leave some ground round it, {_ADVICE}"
-        )
+        raise NoObject(f"the object covers the whole picture; leave some ground round it, {ADVICE}")
     filled = fill_holes(mask)
+    if point is not None:
+        return _region_at(filled, point)
     count, labels, stats, centres = cv2.connectedComponentsWithStats(
         filled.view(np.uint8), connectivity=4
     )
@@ -47,14 +59,14 @@ def choose_object(mask: BoolImage) -> BoolImage:
     regions = [k for k in range(1, count) if stats[k, cv2.CC_STAT_AREA] >= smallest]
     regions = [k for k in regions if not _is_ground(labels == k)]
     if not regions:
-        raise NoObject(f"no object found in the picture; {_ADVICE}")
+        raise NoObject(f"no object found in the picture; {ADVICE}")
     inside = [k for k in regions if not edges_touched(labels == k)]
     areas = {k: float(stats[k, cv2.CC_STAT_AREA]) for k in regions}
     largest = max(areas.values())
     if inside and max(areas[k] for k in inside) > 0.1 * largest:
-        alike = sum(areas[k] >= _ALIKE * max(areas[j] for j in inside) for k in inside)
-        if alike > 1:
-            raise NoObject(f"{alike} objects alike in the picture; {_ADVICE}")
+        alike = [k for k in inside if areas[k] >= ALIKE * max(areas[j] for j in inside)]
+        if len(alike) > 1:
+            raise SeveralAlike([np.asarray(labels == k) for k in alike])
         regions = inside
     middle = np.array([mask.shape[1], mask.shape[0]]) / 2.0
     reach = float(np.hypot(*middle))
@@ -65,13 +77,23 @@ def choose_object(mask: BoolImage) -> BoolImage:
     return np.asarray(labels == max(regions, key=merit))
 
 
+def _region_at(filled: BoolImage, point: Point) -> BoolImage:
+    seed = np.zeros(filled.shape, bool)
+    height, width = filled.shape
+    seed[min(round(point[1]), height - 1), min(round(point[0]), width - 1)] = True
+    region = connected_to(seed, filled)
+    if region.sum() < 16:
+        raise NoObject("no object at the point that was given; give a point well inside it")
+    return region
+
+
 def _is_ground(region: BoolImage) -> bool:
     """Whether a region runs along the frame as a table's edge or a wall does."""
     sides = (region[0], region[-1], region[:, 0], region[:, -1])
     return any(side.mean() > _FULL_EDGE for side in sides) or len(edges_touched(region)) > 3
 
 
-def region_on_ground(lab: FloatImage, ground: Ground) -> BoolImage:
+def region_on_ground(lab: FloatImage, ground: Ground, point: Point | None = None) -> BoolImage:
     """Find what stands out from a plain ground, without the soft shadow it casts.
 
     Parameters
@@ -80,16 +102,18 @@ def region_on_ground(lab: FloatImage, ground: Ground) -> BoolImage:
         Picture in CIE Lab, lightly blurred.
     ground : Ground
         Fitted to the same picture.
+    point : (x, y), or None
+        As in `choose_object`.
 
     Raises
     ------
     NoObject
         As `choose_object`.
     """
-    low = max(2.5, 1.3 * ground.noise)
-    marked = ground.distance > low
+    marked = ground.standing
     # Hysteresis: a region counts when some part of it stands out clearly.
-    region = choose_object(_closed(connected_to(ground.distance > 1.6 * low, marked)))
+    standing_out = connected_to(ground.distance > 1.6 * ground.level, marked)
+    region = choose_object(_closed(standing_out), point)
     window = window_of(region, margin=6)
     cut = replace(ground, surface=ground.surface[window], distance=ground.distance[window])
     whole = _sealed(region[window])
@@ -123,53 +147,29 @@ def _closed(mask: BoolImage) -> BoolImage:
     return np.asarray(cv2.morphologyEx(padded, cv2.MORPH_CLOSE, disc)[2:-2, 2:-2] > 0)
 
 
-def grabcut_region(
-    rgb: NDArray[np.uint8], lab: FloatImage, distance: FloatImage, barred: BoolImage
-) -> BoolImage:
-    """Separate by colour mixtures where no plain ground explains the border.
+def grabcut(rgb: NDArray[np.uint8], labels: NDArray[np.uint8], rounds: int = 3) -> BoolImage:
+    """Separate by colour mixtures, from labels of cv2.grabCut; speckle is opened away.
 
     Parameters
     ----------
-    rgb, lab : (H, W, 3)
-        The picture, 8 bit and in CIE Lab.
-    distance : (H, W)
-        A first guess: what is far from the ground is probably object.
-    barred : (H, W)
-        Pixels that are ground for certain.
-
-    Raises
-    ------
-    NoObject
-        As `choose_object`, or what is found is too small or too large to be trusted.
+    rgb : (H, W, 3)
+    labels : (H, W)
+        GC_BGD, GC_FGD where it is certain, GC_PR_BGD and GC_PR_FGD where it is a guess.
+    rounds : int
     """
-    far = distance / max(float(np.quantile(distance, 0.99)), 1e-6)
-    level, _ = cv2.threshold(
-        np.clip(far * 255, 0, 255).astype(np.uint8), 0, 255, cv2.THRESH_BINARY + cv2.THRESH_OTSU
-    )
-    height, width = far.shape
-    labels = np.where(far * 255 > level, cv2.GC_PR_FGD, cv2.GC_PR_BGD).astype(np.uint8)
-    margin = max(2, round(0.03 * min(height, width)))
-    frame = np.ones(far.shape, bool)
-    frame[margin:-margin, margin:-margin] = False
-    labels[frame | barred] = cv2.GC_BGD
-    if not (labels == cv2.GC_PR_FGD).any():
-        raise NoObject(f"no object found in the picture; {_ADVICE}")
+    if len(np.unique(labels & 1)) < 2:
+        return np.zeros(labels.shape, bool)
     cv2.setRNGSeed(0)  # its colour clusters start from random ones
-    models = np.zeros((1, 65)), np.zeros((1, 65))
+    cut = labels.copy()
     cv2.grabCut(
         np.ascontiguousarray(rgb[..., ::-1]),
-        labels,
+        cut,
         (0, 0, 1, 1),  # unused with a mask
-        models[0],
-        models[1],
-        4,
+        np.zeros((1, 65)),
+        np.zeros((1, 65)),
+        rounds,
         cv2.GC_INIT_WITH_MASK,
     )
-    found = np.isin(labels, (cv2.GC_FGD, cv2.GC_PR_FGD))
+    found = np.isin(cut, (cv2.GC_FGD, cv2.GC_PR_FGD))
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (5, 5))
-    opened = cv2.morphologyEx(found.view(np.uint8), cv2.MORPH_OPEN, disc) > 0
-    region = choose_object(opened)
-    if not 0.01 < region.mean() < 0.8:
-        raise NoObject(f"the object cannot be told from the ground; {_ADVICE}")
-    refuse_faded(region, edge_strength(lab))
-    return region
+    return np.asarray(cv2.morphologyEx(found.view(np.uint8), cv2.MORPH_OPEN, disc) > 0)

@@ -9,10 +9,21 @@ import numpy as np
 
 from profiletool.errors import NoScale, UsageError
 from profiletool.image.marker import find_markers
+from profiletool.image.parallax import (
+    LARGEST_SHARE,
+    PRINT_SHARE,
+    USUAL_FOCAL,
+    Camera,
+    axis_height,
+    remaining,
+    shrinkage,
+)
 from profiletool.records import Picture, Scale, Silhouette
 
 _AGREEMENT = 0.02  # markers, and the sides of one, differ by less or are not trusted
 _SQUARENESS = 0.1
+_CORNER_PX = 0.2  # scatter of a marker's corner
+_SCANNER_SHARE = 0.005
 
 
 @dataclass(frozen=True)
@@ -27,12 +38,15 @@ class ScaleRequest:
         The scale itself.
     marker_mm : float or None
         Side of the ArUco DICT_4X4_50 marker in the picture.
+    camera_distance_mm : float or None
+        From the camera's lens to the plane that a marker or the printed sheet lies in.
     """
 
     height_mm: float | None = None
     width_mm: float | None = None
     mm_per_px: float | None = None
     marker_mm: float | None = None
+    camera_distance_mm: float | None = None
 
 
 def scale_of(picture: Picture, silhouette: Silhouette, request: ScaleRequest) -> Scale:
@@ -41,11 +55,19 @@ def scale_of(picture: Picture, silhouette: Silhouette, request: ScaleRequest) ->
     Parameters
     ----------
     picture : Picture
-        Searched for markers, or asked for its stored resolution.
+        Searched for markers, or asked for its stored resolution and focal length.
     silhouette : Silhouette
         Its contour's extent is the object's height and width.
     request : ScaleRequest
         What the user gave.
+
+    Returns
+    -------
+    Scale
+        Its ``error_share`` holds the contour's scatter for a length that was given, the
+        marker's corners and its height's parallax for a marker, 0.5 % for a scanner; None for a
+        scale that was given, which nobody here can judge. A marker's scale is one at the height
+        of the object's middle only where the camera's distance was given.
 
     Raises
     ------
@@ -55,32 +77,63 @@ def scale_of(picture: Picture, silhouette: Silhouette, request: ScaleRequest) ->
         Nothing is given or stored, or the marker is not found or not trusted.
     """
     _check(request)
-    width_px, height_px = np.ptp(silhouette.contour_px, axis=0)
+    width_px, height_px = (float(side) for side in np.ptp(silhouette.contour_px, axis=0))
+    noise_px = 2.0 * math.sqrt(2.0) * silhouette.noise_px  # of an extent, two deviations
     if request.height_mm is not None:
-        return Scale(request.height_mm / float(height_px), "height")
+        return Scale(request.height_mm / height_px, "height", noise_px / height_px)
     if request.width_mm is not None:
-        return Scale(request.width_mm / float(width_px), "width")
+        return Scale(request.width_mm / width_px, "width", noise_px / width_px)
     if request.mm_per_px is not None:
         return Scale(request.mm_per_px, "mm-per-px")
     if request.marker_mm is not None:
-        return Scale(request.marker_mm / _marker_side_px(picture), "marker")
+        return _marker_scale(picture, width_px, request.marker_mm, request.camera_distance_mm)
     if picture.mm_per_px is not None:
-        return Scale(picture.mm_per_px, "resolution")
+        return Scale(picture.mm_per_px, "resolution", _SCANNER_SHARE)
     raise NoScale(
         "nothing says how large the object is; give --height, --width, --mm-per-px or --marker-mm"
     )
 
 
 def _check(request: ScaleRequest) -> None:
-    for name in ("height_mm", "width_mm", "mm_per_px", "marker_mm"):
-        value = getattr(request, name)
+    for option, value in {
+        "--height": request.height_mm,
+        "--width": request.width_mm,
+        "--mm-per-px": request.mm_per_px,
+        "--marker-mm": request.marker_mm,
+        "--camera-distance": request.camera_distance_mm,
+    }.items():
         if value is not None and not (math.isfinite(value) and value > 0.0):
-            option = name.replace("_", "-").removesuffix("-mm") if name != "marker_mm" else ""
-            option = f"--{option or 'marker-mm'}"
             raise UsageError(f"{option} is {value:g}; give a positive number of millimetres")
 
 
-def _marker_side_px(picture: Picture) -> float:
+def _marker_scale(
+    picture: Picture, width_px: float, marker_mm: float, distance_mm: float | None
+) -> Scale:
+    """Give a marker's scale, at the height of a lying body's axis where the distance is known.
+
+    Without it the object may lie level with the marker or on its plane: its parallax is an error.
+    """
+    side_px, scatter = _marker_side_px(picture)
+    k = marker_mm / side_px
+    corners = math.hypot(scatter, 2.0 * _CORNER_PX / side_px, 2.0 * PRINT_SHARE)
+    focal_px = picture.focal_px or USUAL_FOCAL * max(picture.rgb.shape[:2])
+    distance = distance_mm or focal_px * k
+    t = axis_height(0.5 * width_px * k, distance)
+    if t > LARGEST_SHARE * distance:
+        raise NoScale(
+            f"a camera {distance:.0f} mm away is too near for an object so thick; photograph it "
+            "from farther off, or give --height or --width"
+        )
+    left = remaining(t, Camera((0.0, 0.0), distance), 0.0, section=False)
+    if distance_mm is None:
+        parallax = 1.0 / shrinkage(t, distance) - 1.0 + left.shape
+        return Scale(k, "marker", math.hypot(corners, parallax))
+    share = math.hypot(corners, left.distance, left.shape)
+    return Scale(k * shrinkage(t, distance), "marker", share)
+
+
+def _marker_side_px(picture: Picture) -> tuple[float, float]:
+    """Mean side of the markers, px, and by how much of it the sides scatter."""
     markers = find_markers(picture)
     if not markers:
         raise NoScale(
@@ -99,4 +152,4 @@ def _marker_side_px(picture: Picture) -> float:
             f"the {len(means)} markers differ in size by more than 2 %; lay them level with the "
             "object and photograph from straight above, or give --height or --width"
         )
-    return float(means.mean())
+    return float(means.mean()), float(sides.std() / sides.mean())

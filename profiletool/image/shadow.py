@@ -5,7 +5,6 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from profiletool.errors import NoObject
 from profiletool.image.ground import BoolImage, FloatImage, Ground
 from profiletool.image.masks import connected_to, largest_filled
 
@@ -59,7 +58,6 @@ def without_shadow(region: BoolImage, lab: FloatImage, ground: Ground) -> BoolIm
     if best >= scored[0][0] + 0.08:
         # The largest of the nearly best: a flood too many eats into the object.
         region = next(c for score, c in scored if score > best - 0.04)
-    refuse_faded(region, strength)
     return region
 
 
@@ -74,17 +72,13 @@ def _standing_out(region: BoolImage, distance: FloatImage) -> list[BoolImage]:
     return [largest_filled(region & (distance > level * unit))]
 
 
-def refuse_faded(region: BoolImage, strength: FloatImage) -> None:
-    """Better no outline than one that follows a shadow."""
-    rim = _rim_strength(region, strength)
+def faded(region: BoolImage, lab: FloatImage) -> bool:
+    """Whether much of an outline follows no edge, as where it takes in a shadow."""
+    rim = _rim_strength(region, edge_strength(lab))
     if len(rim) == 0:
-        return
+        return False
     weak = min(_WEAK_EDGE, 0.45 * float(np.quantile(rim, 0.8)))
-    if float((rim < weak).mean()) > _MOST_WEAK:
-        raise NoObject(
-            "the object's outline fades into the ground or a shadow; use softer light or a ground "
-            "of another colour"
-        )
+    return bool((rim < weak).mean() > _MOST_WEAK)
 
 
 def _flooded(region: BoolImage, floodable: BoolImage) -> BoolImage:

@@ -1,42 +1,48 @@
-"""The outline of the one object in a picture, by the first method that works."""
+"""The outline of the one object in a picture: found, or refused with what it could be."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from profiletool.errors import NoObject
+from profiletool.errors import NoObject, Unsure
+from profiletool.image.candidates import BELIEVED, Candidate, find_candidates, judged, view_of
+from profiletool.image.choice import ranked, refuse_another
 from profiletool.image.contour import largest_region, outline, smoothed
-from profiletool.image.ground import BoolImage, FloatImage, fit_ground, to_lab
+from profiletool.image.ground import BoolImage, FloatImage
+from profiletool.image.hint import Box, Hint, check_hint
 from profiletool.image.marker import paint_mask, with_quiet_zone
-from profiletool.image.masks import edges_touched, without_spurs
+from profiletool.image.masks import edges_touched, largest_filled, without_spurs
 from profiletool.image.matte import edge_field
-from profiletool.image.region import choose_object, grabcut_region, region_on_ground
+from profiletool.image.region import Point, choose_object
 from profiletool.records import FloatArray, Picture, Silhouette
 
 _FINE_PIXELS = 6_000_000  # the contour is taken at no more than this
 _ROUGH_PIXELS = 400_000  # the object is told from the ground at no more than this
-_GRABCUT_PIXELS = 60_000  # it takes 25 s per megapixel
-_MOTTLED_LAB = 8.0  # a ground that scatters more than this may hide an object
-_BLUR_PX = 0.8
 _TRIM_PX = 2
-_SPECK_SHARE = 0.01
+_BOX_MARGIN = 0.15  # of a box's size: so much round it tells what the ground looks like
+_SHOWN = 4
+_MATTE, _GIVEN = "alpha matte", "mask"
 
 
-def find_silhouette(picture: Picture, ignore: Sequence[FloatArray] = ()) -> Silhouette:
+def find_silhouette(
+    picture: Picture, ignore: Sequence[FloatArray] = (), hint: Hint | None = None
+) -> Silhouette:
     """Find the outline of the one object in a picture.
 
     Parameters
     ----------
     picture : Picture
-        Of one object, with an alpha matte or on a ground of another colour.
+        Of one object, with an alpha matte or on a ground that looks different.
     ignore : sequence of (4, 2)
         Markers, in the picture frame: they and the white paper round them count as ground.
+    hint : Hint, or None
+        What the user says about where the object is.
 
     Returns
     -------
@@ -48,25 +54,73 @@ def find_silhouette(picture: Picture, ignore: Sequence[FloatArray] = ()) -> Silh
     ------
     NoObject
         Nothing found, several objects alike, or one that covers the whole picture.
+    Unsure
+        Nothing found for certain; it carries the candidates.
+    UsageError
+        The hint does not fit the picture.
     """
+    hint = hint or Hint()
+    shape = picture.rgb.shape[:2]
+    check_hint(hint, shape)
     polygons = [with_quiet_zone(corners) for corners in ignore]
-    fine_step = math.ceil(math.sqrt(picture.rgb[..., 0].size / _FINE_PIXELS))
-    if picture.alpha is not None and _informative(picture.alpha):
-        method, field = "alpha matte", _alpha_field(picture.alpha, fine_step)
+    if hint.mask is not None or hint.box is None:
+        return _outlined(picture, polygons, hint)
+    window = _window(hint.box, shape, _BOX_MARGIN)
+    corner = np.array([window[1].start, window[0].start], np.float64)
+    try:
+        found = _outlined(
+            _cut(picture, window), [polygon - corner for polygon in polygons], _moved(hint, corner)
+        )
+    except Unsure as unsure:
+        whole = [(_pasted(mask, window, shape), c, how) for mask, c, how in unsure.candidates]
+        raise Unsure(str(unsure), tuple(whole)) from None
+    mask = _pasted(found.mask, window, shape)
+    touches = found.touches & edges_touched(mask)
+    return replace(found, contour_px=found.contour_px + corner, mask=mask, touches=touches)
+
+
+@dataclass(frozen=True)
+class _Found:
+    """Share of object in every pixel, (H, W), what found it and how far it is believed."""
+
+    field: FloatImage
+    method: str
+    confidence: float = 1.0
+
+
+def _outlined(picture: Picture, polygons: list[FloatArray], hint: Hint) -> Silhouette:
+    """Find the outline where a box is all but the whole picture."""
+    step = math.ceil(math.sqrt(picture.rgb[..., 0].size / _FINE_PIXELS))
+    if hint.mask is not None:
+        found = _given(picture.rgb, hint.mask, step)
+    elif picture.alpha is not None and _informative(picture.alpha):
+        found = _Found(_alpha_field(picture.alpha, hint, step), _MATTE)
     else:
-        method, field = _photo_field(_reduced(picture.rgb, fine_step), polygons, fine_step)
-    mask = largest_region(field)
-    if method != "alpha matte":
+        found = _searched(picture.rgb, polygons, hint, step)
+    mask = largest_region(found.field)
+    if found.method not in (_MATTE, _GIVEN):
         mask = without_spurs(mask)
-    contour, noise = smoothed(outline(field, mask))
+    contour, noise = smoothed(outline(found.field, mask))
     touches = edges_touched(mask)
-    if method == "alpha matte" and _trimmed(picture.alpha):
+    if found.method == _MATTE and _trimmed(picture.alpha):
         touches = frozenset()
-    if fine_step > 1:
-        contour = (contour + 0.5) * fine_step - 0.5
-        height, width = picture.rgb.shape[:2]
-        mask = np.asarray(cv2.resize(mask.view(np.uint8) * 255, (width, height)) > 127)
-    return Silhouette(contour, mask, method, noise * fine_step, touches)
+    if step > 1:
+        contour = (contour + 0.5) * step - 0.5
+        mask = _resized(mask, picture.rgb.shape[:2])
+    return Silhouette(contour, mask, found.method, noise * step, touches, found.confidence)
+
+
+# --- the three ways -------------------------------------------------------------------------
+
+
+def _given(rgb: NDArray[np.uint8], mask: BoolImage, step: int) -> _Found:
+    """Take the user's mask as it is, its largest region, and measure how well it fits."""
+    whole = largest_filled(mask)
+    field = _reduced(whole.view(np.uint8) * 255, step).astype(np.float32) / np.float32(255)
+    small = _reduced(rgb, max(1.0, math.sqrt(mask.size / _ROUGH_PIXELS)))
+    shape = small.shape[:2]
+    fit = judged(view_of(small, np.zeros(shape, bool)), _resized(whole, shape), _GIVEN)
+    return _Found(field, _GIVEN, fit.confidence)
 
 
 def _informative(alpha: NDArray[np.uint8]) -> bool:
@@ -91,12 +145,90 @@ def _trimmed(alpha: NDArray[np.uint8] | None) -> bool:
     return sum(int(margin) <= _TRIM_PX for margin in margins) >= 3
 
 
-def _alpha_field(alpha: NDArray[np.uint8], step: int) -> FloatImage:
+def _alpha_field(alpha: NDArray[np.uint8], hint: Hint, step: int) -> FloatImage:
+    if hint.box is not None:
+        alpha = np.where(_outside(hint.box, alpha.shape, 1.0), np.uint8(0), alpha)
     field = _reduced(alpha, step).astype(np.float32) / np.float32(255)
     padded = np.pad(field > 0.5, 1)  # a trimmed cut-out may run along the frame
-    chosen = choose_object(padded)[1:-1, 1:-1].astype(np.uint8)
+    point = None if hint.point is None else _scaled(hint.point, step)
+    if point is not None:
+        point = point[0] + 1.0, point[1] + 1.0
+    chosen = choose_object(padded, point)[1:-1, 1:-1].astype(np.uint8)
     # The soft rim stays, other regions go.
     return field * cv2.dilate(chosen, np.ones((3, 3), np.uint8))
+
+
+def _searched(
+    rgb: NDArray[np.uint8], polygons: list[FloatArray], hint: Hint, fine_step: int
+) -> _Found:
+    """Search a picture without a matte."""
+    fine = _reduced(rgb, fine_step)
+    step = max(1.0, math.sqrt(fine[..., 0].size / _ROUGH_PIXELS))
+    small = _reduced(fine, step)
+    shape = small.shape[:2]
+    ignored = paint_mask(polygons, shape, step * fine_step)
+    outside = ignored if hint.box is None else _outside(hint.box, shape, step * fine_step)
+    point = None if hint.point is None else _scaled(hint.point, step * fine_step)
+    view = view_of(small, ignored, outside, point)
+    found = ranked(find_candidates(view))
+    best = found[0]
+    if best.confidence < BELIEVED:
+        raise _unsure(found, rgb.shape[:2])
+    if point is None:
+        refuse_another(best, found)
+    return _Found(edge_field(fine, best.mask, small), best.method, best.confidence)
+
+
+def _unsure(found: list[Candidate], shape: tuple[int, ...]) -> Unsure:
+    shown = tuple((_resized(c.mask, shape), c.confidence, c.method) for c in found[:_SHOWN])
+    return Unsure(
+        f"the object cannot be told from the ground for certain ({100 * shown[0][1]:.0f} %); say "
+        "where it is with --box, --point or --mask, or photograph it on a plain ground of "
+        "another colour",
+        shown,
+    )
+
+
+# --- boxes, points and sizes ----------------------------------------------------------------
+
+
+def _window(box: Box, shape: tuple[int, ...], margin: float) -> tuple[slice, slice]:
+    """Rows and columns of a box and of a margin round it, a share of its size."""
+    x, y, w, h = box
+    left, top = max(0, math.floor(x - margin * w)), max(0, math.floor(y - margin * h))
+    right, bottom = math.ceil(x + (1 + margin) * w), math.ceil(y + (1 + margin) * h)
+    return slice(top, min(bottom, shape[0])), slice(left, min(right, shape[1]))
+
+
+def _cut(picture: Picture, window: tuple[slice, slice]) -> Picture:
+    alpha = None if picture.alpha is None else np.ascontiguousarray(picture.alpha[window])
+    return replace(picture, rgb=np.ascontiguousarray(picture.rgb[window]), alpha=alpha)
+
+
+def _moved(hint: Hint, corner: FloatArray) -> Hint:
+    """Give a hint as it is seen from a corner of its picture."""
+    left, top = (float(value) for value in corner)
+    box = None if hint.box is None else (hint.box[0] - left, hint.box[1] - top, *hint.box[2:])
+    point = None if hint.point is None else (hint.point[0] - left, hint.point[1] - top)
+    return Hint(box, point)
+
+
+def _pasted(mask: BoolImage, window: tuple[slice, slice], shape: tuple[int, ...]) -> BoolImage:
+    whole = np.zeros(shape, bool)
+    whole[window] = mask
+    return whole
+
+
+def _outside(box: Box, shape: tuple[int, ...], step: float) -> BoolImage:
+    """Pixels of a picture reduced by a factor that lie outside a box of the full one."""
+    outside = np.ones(shape, bool)
+    x, y, w, h = (value / step for value in box)
+    outside[round(y) : round(y + h), round(x) : round(x + w)] = False
+    return outside
+
+
+def _scaled(point: Point, step: float) -> Point:
+    return (point[0] + 0.5) / step - 0.5, (point[1] + 0.5) / step - 0.5
 
 
 def _reduced(image: NDArray[np.uint8], step: float) -> NDArray[np.uint8]:
@@ -108,41 +240,8 @@ def _reduced(image: NDArray[np.uint8], step: float) -> NDArray[np.uint8]:
     return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), np.uint8)
 
 
-def _photo_field(
-    rgb: NDArray[np.uint8], polygons: list[FloatArray], fine_step: int
-) -> tuple[str, FloatImage]:
-    """Give the method and the soft field of a picture without a matte."""
-    step = max(1.0, math.sqrt(rgb[..., 0].size / _ROUGH_PIXELS))
-    small = _reduced(rgb, step)
-    ignored = paint_mask(polygons, small.shape[:2], step * fine_step)
-    lab = _softened_lab(small)
-    ground = fit_ground(lab, ~ignored)
-    ground = replace(ground, distance=np.where(ignored, np.float32(0), ground.distance))
-    mottled = ground.scatter_lab > _MOTTLED_LAB
-    try:
-        region = region_on_ground(lab, ground)
-    except NoObject:
-        if not mottled:
-            raise
-        region = np.zeros(lab.shape[:2], bool)
-    method = "plain ground"
-    # On a plain ground the first look is the last word; on a mottled one a speck is not.
-    if mottled and region.mean() < _SPECK_SHARE:
-        method, region = "grabcut", _by_grabcut(small, ground.distance, ignored)
-    return method, edge_field(rgb, region, small)
-
-
-def _softened_lab(rgb: NDArray[np.uint8]) -> FloatImage:
-    return np.asarray(cv2.GaussianBlur(to_lab(rgb), (0, 0), _BLUR_PX), np.float32)
-
-
-def _by_grabcut(rgb: NDArray[np.uint8], distance: FloatImage, ignored: BoolImage) -> BoolImage:
-    step = max(1.0, math.sqrt(distance.size / _GRABCUT_PIXELS))
-    small = _reduced(rgb, step)
-    height, width = small.shape[:2]
-    shrunk = np.asarray(
-        cv2.resize(distance, (width, height), interpolation=cv2.INTER_AREA), np.float32
-    )
-    barred = cv2.resize(ignored.view(np.uint8), (width, height)) > 0
-    region = grabcut_region(small, _softened_lab(small), shrunk, barred).astype(np.float32)
-    return np.asarray(cv2.resize(region, distance.shape[::-1]) > 0.5)
+def _resized(mask: BoolImage, shape: tuple[int, ...]) -> BoolImage:
+    """Bring a mask to another size."""
+    if mask.shape == tuple(shape[:2]):
+        return mask
+    return np.asarray(cv2.resize(mask.view(np.uint8) * 255, (shape[1], shape[0])) > 127)

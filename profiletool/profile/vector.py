@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import stat
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,10 +10,11 @@ from profiletool.profile.vector_chain import Chain, choose
 from profiletool.profile.vector_csv import read_csv
 from profiletool.profile.vector_dxf import read_dxf
 from profiletool.profile.vector_svg import read_svg
+from profiletool.reading import read_file
 from profiletool.records import FloatArray
 
 SUFFIXES = (".dxf", ".svg", ".csv")
-MAX_BYTES = 50_000_000
+MAX_BYTES = 20_000_000
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ def load_vector(path: Path) -> VectorProfile:
     Parameters
     ----------
     path : Path
-        At most 50 MB. Units: see ``read_dxf``, ``read_svg`` and ``read_csv``.
+        At most 20 MB. Units: see ``read_dxf``, ``read_svg`` and ``read_csv``.
 
     Returns
     -------
@@ -75,21 +75,7 @@ def _one_line(text: str) -> str:
 
 
 def _bytes(path: Path) -> bytes:
-    try:
-        status = path.stat()
-        if stat.S_ISDIR(status.st_mode):
-            raise UnreadableInput("a folder; name a DXF, SVG or CSV file")
-        if not stat.S_ISREG(status.st_mode):
-            raise UnreadableInput("not a regular file; name a DXF, SVG or CSV file")
-        if status.st_size > MAX_BYTES:
-            raise UnreadableInput(f"larger than {MAX_BYTES // 1_000_000} MB; simplify the drawing")
-        data = path.read_bytes()
-    except FileNotFoundError:
-        raise UnreadableInput("no such file; check the name") from None
-    except PermissionError:
-        raise UnreadableInput("no permission to read it; change its permissions") from None
-    except (OSError, ValueError) as error:
-        raise UnreadableInput(f"cannot be opened ({error}); check the name") from None
+    data = read_file(path, MAX_BYTES, "a DXF, SVG or CSV file")
     if not data.strip():
         raise UnreadableInput("the file is empty; export the profile again")
     return data

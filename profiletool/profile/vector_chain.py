@@ -6,7 +6,7 @@ per line or arc.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +18,8 @@ FLAT_MM = 0.01  # curves become polylines that stay this near
 JOIN_MM = 0.05  # ends this near to each other meet
 SAME_MM = 1e-6  # points this near are one
 MAX_COORDINATE_MM = 1e5
-MAX_POINTS = 1_000_000
+MAX_POINTS = 250_000
+MAX_MEETINGS = 1_000_000  # pairs of ends that lie together
 _EXACT_MM = 1e-4
 _ALIKE = 5.0  # a chain this many times as long as all others is the profile, the others are crumbs
 
@@ -74,6 +75,11 @@ def join(chains: Iterable[Chain]) -> list[Chain]:
 
     Doubled chains count once. First the ends that coincide, then those within JOIN_MM, so that
     curves drawn in pieces shorter than that do not fall apart.
+
+    Raises
+    ------
+    UnreadableInput
+        So many chains end in one place that it is no drawing of a profile.
     """
     pieces = _without_doubles(chains)
     for gap in (_EXACT_MM, JOIN_MM):
@@ -123,19 +129,49 @@ def _without_doubles(chains: Iterable[Chain]) -> list[Chain]:
 
 def _linked(chains: Sequence[Chain], gap: float) -> list[Chain]:
     """Join chains whose ends lie within ``gap`` mm; those that come in closed are not passed."""
-    from ezdxf import edgeminer
-
     if not chains:
         return []
-    edges = [
-        edgeminer.make_edge(tuple(c.points[0]), tuple(c.points[-1]), payload=c.points)
-        for c in chains
-    ]
-    found = edgeminer.find_all_simple_chains(edgeminer.Deposit(edges, gap_tol=gap))
+    ends = np.concatenate([chain.points[[0, -1]] for chain in chains])
     return [
-        clean(_strung([e.payload[::-1] if e.is_reverse else e.payload for e in run]), False, gap)
-        for run in found
+        clean(
+            _strung([chains[end // 2].points[:: -1 if end % 2 else 1] for end in run]), False, gap
+        )
+        for run in _runs(_partners(ends, gap))
     ]
+
+
+def _partners(ends: FloatArray, gap: float) -> list[int]:
+    """For each end (2 N, 2) the one other that it meets; -1 where it meets none or several."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
+    tree = cKDTree(ends)
+    if tree.count_neighbors(tree, gap) - len(ends) > 2 * MAX_MEETINGS:
+        raise UnreadableInput(
+            "far too many lines end in one place; draw the profile as one plain line"
+        )
+    a, b = tree.query_pairs(gap, output_type="ndarray").T
+    near = coo_array((np.ones(len(a), dtype=np.int8), (a, b)), shape=(len(ends), len(ends)))
+    place = connected_components(near, directed=False)[1]
+    partner = np.full(len(ends), -1)
+    alone = np.bincount(place)[place[a]] == 2
+    partner[a[alone]], partner[b[alone]] = b[alone], a[alone]
+    return [int(end) for end in partner]
+
+
+def _runs(partner: Sequence[int]) -> Iterator[list[int]]:
+    """Yield the ends at which the chains of each run are entered; they are left at the other."""
+    loose = [end for end, met in enumerate(partner) if met < 0]
+    used: set[int] = set()
+    for first in (*loose, *range(0, len(partner), 2)):  # rings last: they may start anywhere
+        run, end = [], first
+        while end >= 0 and end // 2 not in used:
+            used.add(end // 2)
+            run.append(end)
+            end = partner[end ^ 1]
+        if run:
+            yield run
 
 
 def _strung(runs: Sequence[FloatArray]) -> FloatArray:

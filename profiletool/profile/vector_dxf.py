@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 
 KINDS = ("LINE", "ARC", "CIRCLE", "ELLIPSE", "LWPOLYLINE", "POLYLINE", "SPLINE")
 _NEVER_PLOTTED = "defpoints"  # where CAD programs keep the points of dimensions
-MAX_SPLINE_POINTS = 100_000
+MAX_SPLINE_POINTS = 20_000
+MAX_LINES = 500_000
 _ARC_PIECES = 16  # Bézier curves per full ellipse: off by less than 1e-7 of the radius
 
 # What ezdxf throws on damaged data, apart from its own DXFError.
@@ -74,6 +75,9 @@ def read_dxf(path: Path) -> list[Chain]:
     """
     from ezdxf.lldxf.const import DXFError
 
+    with path.open("rb") as file:
+        if file.read().count(b"\n") > MAX_LINES:
+            raise UnreadableInput(f"more than {MAX_LINES} lines of text; delete what is no profile")
     try:
         drawing = _open(path)
         factor = _mm_per_unit(drawing)

@@ -25,8 +25,8 @@ CSS_PX_PER_INCH = 96.0
 _MM_PER_PX = MM_PER_INCH / CSS_PX_PER_INCH
 _PX_PER = {"": 1.0, "px": 1.0, "in": 96.0, "pt": 96 / 72, "pc": 16.0}
 _PX_PER |= {"mm": 1 / _MM_PER_PX, "cm": 10 / _MM_PER_PX, "Q": 0.25 / _MM_PER_PX}
-MAX_ELEMENTS = 20_000
-MAX_NUMBERS = 400_000  # in all paths together
+MAX_ELEMENTS = 10_000
+MAX_NUMBERS = 60_000  # in all paths together
 MAX_DEPTH = 100
 MAX_ATTRIBUTE = 1_000  # characters; longer ones make svgelements crawl
 MAX_STYLE = 20_000
@@ -40,8 +40,9 @@ _NUMBERS = re.compile(_NUMBER)
 _LENGTH = re.compile(rf"\s*({_NUMBER})\s*(px|mm|cm|in|pt|pc|Q|%|)\s*")
 _LENGTHS = ("x", "y", "x1", "y1", "x2", "y2", "cx", "cy", "r", "rx", "ry", "width", "height")
 _LONG = ("d", "points", "href")
-_ALLOWED = {"d": re.compile(r"[MmZzLlHhVvCcSsQqTtAa0-9eE+\-.,\s]*")}
-_ALLOWED["points"] = re.compile(r"[0-9eE+\-.,\s]*")
+# Nothing but numbers and what stands between them; possessive, so that it never looks back.
+_ALLOWED = {"d": re.compile(rf"(?:[MmZzLlHhVvCcSsQqTtAa,\s]|{_NUMBER})*+")}
+_ALLOWED["points"] = re.compile(rf"(?:[,\s]|{_NUMBER})*+")
 
 # What svgelements throws on values that it does not understand.
 _DAMAGE = (ValueError, TypeError, IndexError, KeyError, AttributeError, ArithmeticError)
@@ -146,7 +147,7 @@ def _check_expansion(root: ElementTree.Element, by_id: dict[str, ElementTree.Ele
 
     if size(root, 0) > MAX_ELEMENTS:
         raise UnreadableInput(
-            f"<use> makes more than {MAX_ELEMENTS} elements; simplify the drawing"
+            f"more than {MAX_ELEMENTS} elements, with what <use> makes; simplify the drawing"
         )
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from profiletool.profile.curve import arc_length
+from profiletool.profile.vector_chain import MAX_COORDINATE_MM
 from profiletool.records import FloatArray
 
 
@@ -34,11 +35,13 @@ def read_shape_csv(text: str, name: str) -> FloatArray:
     Raises
     ------
     ValueError
-        When the text is no such table.
+        When the text is no such table, or of absurd numbers.
     """
     rows = [row.split(",") for row in text.splitlines()]
-    points = [[float(x), float(y)] for curve, _, x, y in rows if curve == name]
-    return np.array(points, dtype=float).reshape(-1, 2)
+    points = np.array([[float(x), float(y)] for curve, _, x, y in rows if curve == name])
+    if not np.all(np.abs(points) <= MAX_COORDINATE_MM):
+        raise ValueError(f"coordinates beyond {MAX_COORDINATE_MM:g} mm or not finite")
+    return points.reshape(-1, 2)
 
 
 def _rows(name: str, points: FloatArray) -> list[str]:

@@ -280,8 +280,8 @@ def test_cut_outs_on_many_grounds(
                 refused.add(f"{name} on {ground}")
             else:
                 values[f"{name} on {ground}"] = iou(found.mask, truth)
-    # A grey mug on the same grey may be given up.
-    assert refused <= {"mug on uneven grey", "mug on shadow"}
+    # A grey mug on the same grey may be given up, and a white jug on its own grey shadow.
+    assert refused <= {"mug on uneven grey", "mug on shadow", "pitcher on shadow"}
     assert np.median(list(values.values())) >= 0.98
     # Where a grey mug or a white jug takes the colour of its own shadow, part of its edge is not
     # in the picture at all.

@@ -1,0 +1,99 @@
+"""The size of an object on the printed sheet: its outline and scale, and how sure they are."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from profiletool.errors import NoScale
+from profiletool.image.parallax import (
+    DISTANCE_SHARE,
+    LARGEST_SHARE,
+    axis_height,
+    remaining,
+    shrinkage,
+)
+from profiletool.image.rectify import Rectified
+from profiletool.image.section import lying_section
+from profiletool.records import Scale, Silhouette
+
+
+@dataclass(frozen=True)
+class Measured:
+    """An object on the sheet.
+
+    Attributes
+    ----------
+    silhouette : Silhouette
+        In the frontal picture. Where the object can be a body of revolution, the contour is that
+        of the section through its axis, as the camera sees it there.
+    scale : Scale
+        At the height of the axis; its ``error_share`` holds all that follows.
+    height_mm : float
+        The axis's height above the sheet.
+    round : bool
+        Whether the contour is that of a section.
+    measured_share : float
+        What the print, the corners, the lens, the contour and the camera's distance may do.
+    shape_share : float
+        What an object that is no body of revolution, or does not lie on the sheet, may do.
+    """
+
+    silhouette: Silhouette
+    scale: Scale
+    height_mm: float
+    round: bool
+    measured_share: float
+    shape_share: float
+
+
+def measure(
+    made: Rectified, silhouette: Silhouette, camera_distance_mm: float | None = None
+) -> Measured:
+    """Give an object's outline and scale at the height of its axis.
+
+    Parameters
+    ----------
+    made : Rectified
+    silhouette : Silhouette
+        Found in ``made.plain``.
+    camera_distance_mm : float or None
+        From the lens to the sheet, where it was measured; else the picture tells it.
+
+    Raises
+    ------
+    NoScale
+        The camera would have been inside the object.
+    """
+    k = made.picture.mm_per_px
+    assert k is not None  # `rectify` always knows it
+    camera = made.camera
+    if camera_distance_mm is not None:
+        camera = replace(camera, height_mm=camera_distance_mm, height_share=DISTANCE_SHARE)
+    foot, high = np.array(camera.foot_px), camera.height_mm
+    contour = silhouette.contour_px
+    size = np.ptp(contour, axis=0)
+    section = lying_section(contour * k, np.append(foot * k, high))
+    t = axis_height(0.5 * float(size[0]) * k, high) if section is None else section.height_mm
+    if t > LARGEST_SHARE * high:
+        raise NoScale(
+            f"a camera {high:.0f} mm above the sheet is too near for an object so thick; "
+            "photograph it from farther off"
+        )
+    if section is not None:
+        contour = foot + (section.points / k - foot) / shrinkage(t, high)
+    aside = float(np.hypot(*(contour.mean(axis=0) - foot))) * k
+    left = remaining(t, camera, aside, section is not None)
+    noise = 2.0 * math.sqrt(2.0) * silhouette.noise_px / float(size.max())
+    measured = math.hypot(2.0 * made.error_share, left.distance, noise)
+    share = math.hypot(measured, left.shape)
+    return Measured(
+        silhouette=replace(silhouette, contour_px=contour),
+        scale=Scale(k * shrinkage(t, high), "sheet", share),
+        height_mm=t,
+        round=section is not None,
+        measured_share=measured,
+        shape_share=left.shape,
+    )
