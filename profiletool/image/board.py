@@ -20,6 +20,8 @@ from profiletool.records import FloatArray, Picture
 # Single markers are 4 x 4 (`--marker-mm`). These have 5 x 5 bits, a grid of another size, and
 # differ among themselves in six bits at least: neither is ever read as the other.
 _DICTIONARY = cv2.aruco.DICT_5X5_250
+_LEAST_SPREAD = 2.0  # root of the corners' squared distances to a line, in squares
+_SECOND = 4  # markers that do not fit are no chance any more
 MARKER_CELLS = 7  # across a marker: five bits and the black border
 
 
@@ -136,7 +138,7 @@ def ink(board: Board) -> FloatArray:
 
 def ink_picture(board: Board, px_per_mm: float, rim_mm: float) -> NDArray[np.float32]:
     """Draw the frame: the share of ink in every pixel, (H, W), with a white rim round it."""
-    fine = 8
+    fine = 4
     width, height = (round((side + 2.0 * rim_mm) * px_per_mm) for side in board.size_mm)
     drawn = np.zeros((height * fine, width * fine), np.uint8)
     for x0, y0, x1, y1 in np.round((_ink(board) + rim_mm) * px_per_mm * fine).astype(int):
@@ -190,7 +192,7 @@ def find_board(picture: Picture) -> Sighting | None:
     Returns
     -------
     Sighting or None
-        None where fewer than four corners are seen.
+        None where fewer than four corners are seen, or all of them in a line.
     """
     grey = np.asarray(cv2.cvtColor(picture.rgb, cv2.COLOR_RGB2GRAY), np.uint8)
     quads, ids = _markers(grey)
@@ -224,9 +226,9 @@ def _sighted(
         return None
     quads, own_ids = quads[own][chosen], ids[own][chosen]
     px, at = _saddles(board, grey, quads, own_ids)
-    if len(px) < 4:
+    if len(px) < 4 or np.linalg.svd(at - at.mean(axis=0), compute_uv=False)[1] < _LEAST_SPREAD:
         return None
-    others = len(chosen) < len(ids)
+    others = len(ids) - len(chosen) >= _SECOND
     mm = np.asarray(at * board.square_mm, np.float64)
     return Sighting(board, px, mm, len(chosen), others)
 

@@ -19,6 +19,8 @@ from profiletool.image.rectify import Rectified
 from profiletool.image.section import lying_section
 from profiletool.records import Scale, Silhouette
 
+_EDGE_PX = 0.15  # by which blur and light move an edge as a whole, one standard deviation
+
 
 @dataclass(frozen=True)
 class Measured:
@@ -86,7 +88,8 @@ def measure(
         contour = foot + (section.points / k - foot) / shrinkage(t, high)
     aside = float(np.hypot(*(contour.mean(axis=0) - foot))) * k
     left = remaining(t, camera, aside, section is not None)
-    noise = 2.0 * math.sqrt(2.0) * silhouette.noise_px / float(size.max())
+    edges = math.hypot(silhouette.noise_px, _EDGE_PX)
+    noise = 2.0 * math.sqrt(2.0) * edges / float(size.min())
     measured = math.hypot(2.0 * made.error_share, left.distance, noise)
     share = math.hypot(measured, left.shape)
     return Measured(

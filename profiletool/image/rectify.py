@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from profiletool.image.bare import RIM_MM, without_squares
+from profiletool.image.bare import RIM_MM, places_mm, without_squares
 from profiletool.image.board import Board, corners_of, find_board
 from profiletool.image.lens import View, fit_view
 from profiletool.image.parallax import PRINT_SHARE, Camera
@@ -115,17 +115,22 @@ def rectify(picture: Picture) -> Rectified | None:
     Returns
     -------
     Rectified or None
-        None where no sheet is found, or less than four of its corners.
+        None where no sheet is found, or too little of it to tell its plane.
     """
     seen = find_board(picture)
     if seen is None:
         return None
     height, width = picture.rgb.shape[:2]
     view = fit_view(seen.px, seen.mm, (width, height), picture.focal_px)
+    if not view.camera_mm[2] > 0.0:
+        return None
     frame = _frame_for(seen.board, view)
     rgb = _warped(picture.rgb, view, frame)
     alpha = None if picture.alpha is None else _warped(picture.alpha, view, frame)
-    squares, plain = without_squares(seen.board, rgb, frame.turn)
+    spots = view.picture_of(places_mm(seen.board))
+    inside = (spots >= -0.5) & (spots <= np.array([width, height]) - 0.5)
+    shown = np.asarray(inside.all(axis=-1))
+    squares, plain = without_squares(seen.board, rgb, frame.turn, shown)
     x, y, up = view.camera_mm
     foot = frame.px(np.array([x, y]))
     middle = np.array(seen.board.size_mm) / 2.0

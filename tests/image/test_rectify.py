@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 
 import cv2
 import numpy as np
@@ -11,19 +12,25 @@ import pytest
 
 from profiletool.image.board import BOARDS
 from profiletool.image.marker import find_markers
+from profiletool.image.measure import measure
 from profiletool.image.rectify import Rectified, edge_warnings, rectify
 from profiletool.image.silhouette import find_silhouette
 from profiletool.records import Picture
-from tests.image.trials import Trial, trial
+from tests.image.trials import Trial, extents, trial
 from tests.image.views import BODIES, POSES, PX_PER_MM, Shot, paper, photograph, random_shot, sphere
 
 A4, LETTER = BOARDS
 QUICK = ["overhead, 0.5 m", "from below, 30 deg", "near, slanted, barrel"]
-SMALL = Shot(500, 4, 60, size=(720, 960))
+SMALL = Shot(500, 4, 60, size=(600, 800))
 
 
 def rng(seed: int = 5) -> np.random.Generator:
     return np.random.default_rng(seed)
+
+
+@cache
+def good() -> Rectified:
+    return seen()
 
 
 def seen(shot: Shot = SMALL, change: Callable[[np.ndarray], None] | None = None) -> Rectified:
@@ -53,7 +60,7 @@ def test_sizes_from_three_poses(name: str, kind: str) -> None:
 def test_sizes_from_all_poses_and_random_ones() -> None:
     generator = rng(11)
     kinds = list(BODIES)
-    shots = [*POSES.values(), *(random_shot(generator) for _ in range(20))]
+    shots = [*POSES.values(), *(random_shot(generator) for _ in range(14))]
 
     def tried(number: int, shot: Shot) -> Trial:
         stored = float(generator.normal(0, 0.03))
@@ -66,8 +73,8 @@ def test_sizes_from_all_poses_and_random_ones() -> None:
     assert errors.max() < 0.01
     assert np.mean([one.inside for one in trials]) >= 0.95
     # What the sheet itself says is no more than it can know: the bars are not just wide.
-    assert np.mean([one.inside_measured for one in trials]) > 0.7
-    assert max(one.measured.measured_share for one in trials) < 0.01
+    assert np.mean([one.inside_measured for one in trials]) > 0.8
+    assert max(one.measured.measured_share for one in trials) < 0.012
 
 
 def test_flat_disc_keeps_its_size_under_tilt_and_distortion() -> None:
@@ -121,13 +128,13 @@ def test_measured_distance_stands_in_for_an_unknown_one() -> None:
 
 
 def test_straight_lens_gets_no_terms() -> None:
-    assert seen().lens_terms == 0
+    assert good().lens_terms == 0
 
 
 # --- the frontal view ----------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("turns", range(4))
+@pytest.mark.parametrize("turns", [1, 2, 3])
 def test_up_stays_up(turns: int) -> None:
     picture = photograph(A4, BODIES["bulb"], SMALL, rng(), at=(0.0, 0.0))
     turned = replace(picture, rgb=np.ascontiguousarray(np.rot90(picture.rgb, turns)))
@@ -144,7 +151,7 @@ def test_up_stays_up(turns: int) -> None:
 
 
 def test_frame_is_painted_over_and_the_squares_are_told() -> None:
-    made = seen()
+    made = good()
     assert made.hidden == 0
     assert len(made.squares) == len(A4.squares())
     k = made.picture.mm_per_px
@@ -184,7 +191,7 @@ def test_marker_on_the_sheet_is_still_read() -> None:
 
 
 def test_a_third_of_the_corners_hidden() -> None:
-    whole = seen()
+    whole = good()
 
     def cover(rgb: np.ndarray) -> None:
         rgb[:, : round(0.32 * rgb.shape[1])] = (60, 110, 60)
@@ -204,7 +211,26 @@ def test_hidden_squares_are_left_as_they_are() -> None:
     assert made.hidden > 2
     said = edge_warnings(made, silhouette)
     assert any("hides" in text for text in said)
-    assert edge_warnings(seen(), find_silhouette(seen().plain)) == ()
+    assert edge_warnings(good(), find_silhouette(good().plain)) == ()
+
+
+@pytest.mark.parametrize(
+    ("kind", "shot", "at"),
+    [
+        ("bulb", replace(POSES["from the side, 30 deg"], size=(720, 960)), (-8.0, 0.0)),
+        ("cylinder", SMALL, (-60.0, 10.0)),
+        ("bulb", replace(SMALL, aim=(60.0, 90.0)), (0.0, 0.0)),
+    ],
+)
+def test_size_over_the_frame_or_on_part_of_it(
+    kind: str, shot: Shot, at: tuple[float, float]
+) -> None:
+    body = BODIES[kind]
+    made = rectify(photograph(A4, body, shot, rng(), at))
+    assert made is not None
+    assert made.hidden > 0
+    found = measure(made, find_silhouette(made.plain))
+    np.testing.assert_allclose(extents(found, 0.0), (body.width, body.length), rtol=0.01)
 
 
 @pytest.mark.parametrize(
@@ -227,18 +253,19 @@ def test_few_corners_are_said() -> None:
 
     made = seen(change=cover)
     assert any("hide less" in text for text in made.warnings)
-    assert made.error_share > seen().error_share
+    assert made.error_share > good().error_share
 
 
 def test_a_good_picture_has_no_warnings() -> None:
-    assert seen().warnings == ()
+    assert good().warnings == ()
 
 
-def test_pictures_of_hardly_any_sheet() -> None:
+@pytest.mark.parametrize(("rows", "enough"), [(90, False), (120, False), (200, True)])
+def test_a_single_line_of_corners_is_no_sheet(rows: int, enough: bool) -> None:
     picture = photograph(A4, None, SMALL, rng())
-    for share in (0.02, 0.08, 0.12, 0.2, 0.3):
-        rgb = np.full_like(picture.rgb, 120)
-        rows = round(share * rgb.shape[0])
-        rgb[-rows - 60 : -60] = picture.rgb[-rows - 60 : -60]
-        made = rectify(Picture(rgb, None, None, "PNG"))
-        assert made is None or made.picture.rgb.size < 3 * 24_100_000
+    rgb = np.full_like(picture.rgb, 120)
+    rgb[-rows - 80 : -80] = picture.rgb[-rows - 80 : -80]
+    made = rectify(Picture(rgb, None, None, "PNG"))
+    assert (made is not None) == enough
+    if made is not None:
+        assert made.camera.height_mm == pytest.approx(500.0, rel=4 * made.camera.height_share)
