@@ -69,7 +69,8 @@ def _looked_up(image: FloatImage, x: FloatImage, y: FloatImage) -> FloatImage:
                   borderMode=cv2.BORDER_REPLICATE)
         for k in range(0, len(x), 8192)
     ]  # fmt: skip
-    return np.asarray(np.concatenate(parts), np.float32)
+    # remap drops a lone channel's axis.
+    return np.asarray(np.concatenate(parts).reshape(*x.shape, -1), np.float32)
 
 
 def _rounded_off(points: FloatArray) -> FloatArray:

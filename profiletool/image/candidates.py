@@ -15,22 +15,26 @@ from profiletool.errors import NoObject
 from profiletool.image.across import snapped
 from profiletool.image.colours import cells, histogram, likelier
 from profiletool.image.ground import BoolImage, FloatImage, Ground, fit_ground, frame_of, to_lab
-from profiletool.image.masks import largest_filled, overlap
+from profiletool.image.masks import largest_filled, overlap, window_of
 from profiletool.image.quality import Quality, quality_of
 from profiletool.image.region import Point, SeveralAlike, choose_object, grabcut, region_on_ground
 from profiletool.image.saliency import barrier, strangeness
 from profiletool.image.shadow import faded
 
 BELIEVED = 0.5  # a candidate of less confidence is nothing to design from
-_CLEAR = 0.85  # on a mottled ground, the first look is the last if it is as good as this
-_PLAIN_PRIOR = 1.5
+_CLEAR = 0.75  # on a mottled ground, the first look is the last if it is as good as this
+# Logarithms of odds: what a plain ground shows is to be trusted, and on a mottled one there is
+# more that looks like an object.
+_PLAIN_PRIOR, _MOTTLED_PRIOR = 1.5, -0.7
 _ROUGH_PIXELS = 30_000
-_MOTTLED_LAB = 8.0  # a ground that scatters more than this may hide an object
+_MOTTLED_LAB = 3.0  # a ground that scatters more than this is not told by a smooth surface
 _BLUR_PX = 0.8
+_AT_POINT = "grabcut round the point"
 _SIZES = 0.004, 0.85  # of the frame
 _SNAP_PX = 4
 _SAME = 0.985  # overlap of regions that the snapping makes one
 _Value = TypeVar("_Value", np.uint8, np.float32)
+_FLAT = 0.05  # a map that does not rise above this shows rounding only
 _MOST = 3  # regions of one map that are looked at
 
 
@@ -51,6 +55,8 @@ class View:
         Where there is no object for certain.
     point : (x, y), or None
         Pixels of this view; inside the object for certain.
+    boxed : bool
+        Whether all but a box is barred.
     """
 
     rgb: NDArray[np.uint8]
@@ -59,6 +65,7 @@ class View:
     ground: Ground
     barred: BoolImage
     point: Point | None = None
+    boxed: bool = False
 
     @property
     def plain(self) -> bool:
@@ -92,7 +99,7 @@ def view_of(
     lab = _soft_lab(rgb)
     ground = fit_ground(lab, ~ignored)
     ground = replace(ground, distance=np.where(barred, np.float32(0), ground.distance))
-    return View(rgb, lab, cells(lab), ground, barred, point)
+    return View(rgb, lab, cells(lab), ground, barred, point, outside is not None)
 
 
 def _soft_lab(rgb: NDArray[np.uint8]) -> FloatImage:
@@ -131,13 +138,16 @@ def find_candidates(view: View) -> list[Candidate]:
 def _first_look(view: View) -> Candidate:
     """Look for what stands out from a plain ground; if it is one, that is to be trusted."""
     region = region_on_ground(view.lab, view.ground, view.point)
+    found = judged(view, region, "plain ground")
     trusted = view.plain and not faded(region, view.lab)
-    return replace(judged(view, region, "plain ground"), prior=_PLAIN_PRIOR if trusted else 0.0)
+    return replace(found, prior=_PLAIN_PRIOR) if trusted else found
 
 
 def judged(view: View, mask: BoolImage, method: str) -> Candidate:
     """Judge one region of a view."""
-    return Candidate(mask, method, quality_of(view.lab, view.cell, mask))
+    told = view.plain or view.boxed or method == _AT_POINT
+    prior = 0.0 if told else _MOTTLED_PRIOR
+    return Candidate(mask, method, quality_of(view.lab, view.cell, mask), prior)
 
 
 def _second_looks(view: View, found: list[Candidate]) -> Iterator[tuple[str, BoolImage]]:
@@ -165,6 +175,7 @@ class _Rough:
     distance: FloatImage
     barred: BoolImage
     point: Point | None
+    boxed: bool
 
 
 def _rough(view: View, step: float) -> _Rough:
@@ -173,7 +184,8 @@ def _rough(view: View, step: float) -> _Rough:
     rgb = _resized(view.rgb, shape)
     barred = _resized(view.barred.astype(np.float32), shape) > 0.5
     point = None if view.point is None else (view.point[0] / step, view.point[1] / step)
-    return _Rough(rgb, _soft_lab(rgb), _resized(view.ground.distance, shape), barred, point)
+    distance = _resized(view.ground.distance, shape)
+    return _Rough(rgb, _soft_lab(rgb), distance, barred, point, view.boxed)
 
 
 def _resized(image: NDArray[_Value], shape: tuple[int, ...]) -> NDArray[_Value]:
@@ -198,7 +210,9 @@ def _rough_masks(view: _Rough) -> Iterator[tuple[str, BoolImage]]:
 
 def _standing_out(strange: FloatImage) -> BoolImage:
     """Split a map by Otsu's threshold."""
-    top = max(float(np.quantile(strange, 0.99)), 1e-6)
+    top = float(np.quantile(strange, 0.99))
+    if top < _FLAT:
+        return np.zeros(strange.shape, bool)
     grey = np.clip(strange * (255.0 / top), 0, 255).astype(np.uint8)
     level, _ = cv2.threshold(grey, 0, 255, cv2.THRESH_BINARY | cv2.THRESH_OTSU)
     return np.asarray(grey > level)
@@ -219,10 +233,22 @@ def _guesses(view: _Rough) -> Iterator[tuple[str, BoolImage]]:
     if view.point is not None:
         for share in (0.12, 0.25):
             radius = share * min(height, width)
-            yield "grabcut round the point", _disc((height, width), view.point, radius)
+            yield _AT_POINT, _disc((height, width), view.point, radius)
+        return
+    if view.boxed:
+        yield "grabcut in the box", _inscribed(~view.barred)
         return
     middle = (width - 1) / 2.0, (height - 1) / 2.0
     yield "grabcut from the middle", _disc((height, width), middle, 0.3 * min(height, width))
+
+
+def _inscribed(box: BoolImage) -> BoolImage:
+    """Mask the ellipse that touches a box from inside."""
+    rows, columns = window_of(box, 0)
+    middle = (columns.start + columns.stop - 1) / 2.0, (rows.start + rows.stop - 1) / 2.0
+    half = (columns.stop - columns.start) / 2.0, (rows.stop - rows.start) / 2.0
+    v, u = np.ogrid[: box.shape[0], : box.shape[1]]
+    return np.asarray(np.hypot((u - middle[0]) / half[0], (v - middle[1]) / half[1]) <= 1.0)
 
 
 def _disc(shape: tuple[int, ...], centre: Point, radius: float) -> BoolImage:

@@ -18,15 +18,19 @@ _WEIGHTS = {"edge": 1.0, "peak": 1.0, "separation": -1.5, "ground": 3.0, "solidi
 _BY_SIZE, _BY_AGREEMENT = 3.5, 3.0
 
 
-def ranked(found: Sequence[Candidate]) -> list[Candidate]:
-    """Put the candidate first that is most likely the whole object."""
+def ranked(found: Sequence[Candidate], pointed: bool = False) -> list[Candidate]:
+    """Put the candidate first that is most likely the whole object.
 
-    def merit(candidate: Candidate) -> float:
+    Where it was pointed at, one that is believed comes before a larger one that is not.
+    """
+
+    def merit(candidate: Candidate) -> tuple[bool, float]:
         quality = candidate.quality
         looks = sum(weight * float(getattr(quality, name)) for name, weight in _WEIGHTS.items())
         others = [overlap(candidate.mask, o.mask) for o in found if o is not candidate]
         agreement = sum(others) / max(len(others), 1)
-        return looks + _BY_SIZE * math.sqrt(quality.size) + _BY_AGREEMENT * agreement
+        whole = looks + _BY_SIZE * math.sqrt(quality.size) + _BY_AGREEMENT * agreement
+        return pointed and candidate.confidence >= BELIEVED, whole
 
     return sorted(found, key=merit, reverse=True)
 

@@ -13,12 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
 
-from profiletool.errors import UnreadableInput
+from profiletool.errors import UnreadableInput, UsageError
 from profiletool.reading import check_file
 from profiletool.records import MM_PER_INCH, Picture
 
 MAX_PIXELS = 64_000_000
 MAX_BYTES = 50_000_000
+_LUMA = np.array([299, 587, 114])  # thousandths
 MIN_SIDE_PX = 16
 FORMATS = ("PNG", "JPEG", "TIFF", "BMP", "WEBP")  # JPEG takes in multi-picture MPO
 _ASK_FOR = "save it as PNG, JPEG, TIFF, BMP or WebP"
@@ -93,6 +94,42 @@ def load_picture(path: Path) -> Picture:
         format=kind,
         focal_px=focal_px,
     )
+
+
+def load_mask(path: Path, shape: tuple[int, int]) -> NDArray[np.bool_]:
+    """Decode a mask: what is opaque, or white where the file has no alpha channel, is object.
+
+    Parameters
+    ----------
+    path : Path
+        A file as `load_picture` takes it.
+    shape : (H, W)
+        Of the picture that it is for, upright.
+
+    Returns
+    -------
+    (H, W) bool
+        True from half way on, 128 of 255.
+
+    Raises
+    ------
+    UnreadableInput
+        As `load_picture`.
+    UsageError
+        The mask is of another size than the picture, or empty.
+    """
+    picture = load_picture(path)
+    height, width = picture.rgb.shape[:2]
+    if (height, width) != tuple(shape):
+        raise UsageError(
+            f"{path}: the mask is {width} x {height} pixels and the picture {shape[1]} x "
+            f"{shape[0]}; save the mask at the picture's size"
+        )
+    shade = picture.rgb @ _LUMA // 1000 if picture.alpha is None else picture.alpha
+    mask = np.asarray(shade >= 128)
+    if not mask.any():
+        raise UsageError(f"{path}: the mask is empty; paint the object white on black")
+    return mask
 
 
 def _refuse(path: Path, reason: str) -> NoReturn:

@@ -157,7 +157,8 @@ def grabcut(rgb: NDArray[np.uint8], labels: NDArray[np.uint8], rounds: int = 3) 
         GC_BGD, GC_FGD where it is certain, GC_PR_BGD and GC_PR_FGD where it is a guess.
     rounds : int
     """
-    if len(np.unique(labels & 1)) < 2:
+    share = float((labels & 1).mean())
+    if not _MIN_SHARE < share < 1.0:  # too few to tell their colours, on which it takes very long
         return np.zeros(labels.shape, bool)
     cv2.setRNGSeed(0)  # its colour clusters start from random ones
     cut = labels.copy()

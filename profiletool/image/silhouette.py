@@ -167,16 +167,19 @@ def _searched(
     small = _reduced(fine, step)
     shape = small.shape[:2]
     ignored = paint_mask(polygons, shape, step * fine_step)
-    outside = ignored if hint.box is None else _outside(hint.box, shape, step * fine_step)
+    outside = None if hint.box is None else _outside(hint.box, shape, step * fine_step)
     point = None if hint.point is None else _scaled(hint.point, step * fine_step)
     view = view_of(small, ignored, outside, point)
-    found = ranked(find_candidates(view))
+    found = ranked(find_candidates(view), pointed=point is not None)
     best = found[0]
     if best.confidence < BELIEVED:
         raise _unsure(found, rgb.shape[:2])
     if point is None:
         refuse_another(best, found)
-    return _Found(edge_field(fine, best.mask, small), best.method, best.confidence)
+    field = edge_field(fine, best.mask, small)
+    if hint.box is not None:
+        field[_outside(hint.box, field.shape, fine_step)] = 0.0
+    return _Found(field, best.method, best.confidence)
 
 
 def _unsure(found: list[Candidate], shape: tuple[int, ...]) -> Unsure:

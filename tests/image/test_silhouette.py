@@ -124,7 +124,7 @@ def test_ground_of_many_colours(colour: tuple[int, int, int], cell: int, method:
     ground = np.kron(paints[cells], np.ones((cell, cell, 1)))
     cover = disc(160, 120, 60)
     found = found_in(laid(cover, ground, colour))
-    assert found.method == method
+    assert found.method.startswith(method)
     assert iou(found.mask, cover >= 0.5) > 0.95
 
 
