@@ -84,7 +84,7 @@ def _drawings() -> list[bytes]:
         return raw.getvalue() if binary else text.getvalue().encode()
 
     short = (
-        "0\nSECTION\n2\nENTITIES\n0\nLWPOLYLINE\n90\n3\n70\n1\n10\n0\n20\n0\n10\n9\n20\n0\n10\n9\n"
+        "0\nSECTION\n2\nENTITIES\n0\nLWPOLYLINE\n100\nAcDbEntity\n100\nAcDbPolyline\n90\n3\n70\n1\n10\n0\n20\n0\n10\n9\n20\n0\n10\n9\n"
         "20\n9\n0\nCIRCLE\n10\n3\n20\n3\n40\n2\n0\nARC\n10\n0\n20\n0\n40\n5\n50\n0\n51\n90\n"
         "0\nENDSEC\n0\nEOF\n"
     )
@@ -111,14 +111,18 @@ def _svgs() -> list[bytes]:
 
 
 def _points() -> list[bytes]:
-    texts = ("x;y\n0;0\n10,5;0\n10;-5,25\n", "x_mm,y_mm\n0,0\n9,0\n9,9\n0,9\n0,0\n", "0 0\n1 2\n3 9")
+    texts = (
+        "x;y\n0;0\n10,5;0\n10;-5,25\n",
+        "x_mm,y_mm\n0,0\n9,0\n9,9\n0,9\n0,0\n",
+        "0 0\n1 2\n3 9",
+    )
     return [text.encode() for text in texts]
 
 
 def _options() -> list[bytes]:
     return [
         b'side = "right"\nmax-length = 200\nroot = 12\njoints = 4\nverify = false\n',
-        b'height = 100.0\nmethod = "paper"\nbase_free = true\nformula = "paper"\ntolerance = 1e-1\n',
+        b'height = 100.0\nmethod = "paper"\nwall = 2\nformula = "paper"\ntolerance = 0.1\n',
         b'out = "here"\nkerf = 0.1\ndate = "today"\npaper = "letter"\nforce = false\n',
     ]
 

@@ -36,7 +36,7 @@ design_app = typer.Typer(
 )
 
 
-_MOST_CONFIG_BYTES = 20_000
+_MOST_CONFIG_BYTES = 10_000
 # What typer raises for words it cannot take; its own base classes have no public name.
 _BadUsage = cast(type[typer.BadParameter], typer.BadParameter.__bases__[0])
 

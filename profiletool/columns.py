@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from profiletool.errors import UnreadableInput
 
 NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+MAX_LINE = 10_000  # characters
 _SHOWN = 20  # characters of a bad field in a message
 
 
@@ -23,7 +24,7 @@ def read_lines(data: bytes) -> Iterator[tuple[int, list[str]]]:
     Raises
     ------
     UnreadableInput
-        When it is not text.
+        When it is not text, or a line of it never ends.
     """
     if b"\0" in data:
         raise UnreadableInput("not plain text; save it as CSV in UTF-8")
@@ -32,6 +33,8 @@ def read_lines(data: bytes) -> Iterator[tuple[int, list[str]]]:
     except UnicodeDecodeError:
         text = data.decode("latin-1")  # for words in the header: numbers are ASCII anyway
     for number, line in enumerate(text.splitlines(), start=1):
+        if len(line) > MAX_LINE:
+            raise UnreadableInput(f"line {number} never ends; give one point a line")
         content = line.partition("#")[0].strip()
         if content:
             yield number, _fields(content)

@@ -3,40 +3,40 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import shutil
-import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from profiletool.errors import OutputError, UsageError
+from profiletool.workfolder import OLD, recover, working_beside
 
 _MARKS = ("design.json", "fe.json", "formula.json")  # any makes a folder ours to replace
+_TRIES = 100  # others may put theirs in the place while ours is on its way
 
 
 def check_free(folder: Path, force: bool) -> None:
-    """Refuse early to write over something.
+    """Refuse early to write over something, or where the system does not let us.
 
     Raises
     ------
     UsageError
         When the folder exists and ``force`` is not given, or it is no folder of ours.
+    OutputError
+        When nothing can be written there.
     """
     if not _stands(folder):
         return
-    if not folder.is_dir() or folder.is_symlink():
-        raise UsageError(f"{folder} exists and is no folder; choose another with --out")
-    ours = any((folder / mark).is_file() for mark in _MARKS) or not any(folder.iterdir())
-    if force and not ours:
-        raise UsageError(
-            f"{folder} holds no {' or '.join(_MARKS)}, so --force will not replace it; "
-            "choose another with --out"
-        )
+    _check_ours(folder, folder, force)
     if not force:
         raise UsageError(f"{folder} exists; replace it with --force or choose another with --out")
 
 
 def write_folder(folder: Path, files: Mapping[str, bytes], force: bool) -> None:
     """Write all files into a folder beside its place, then move it there in one step.
+
+    Of several processes that write to one place, each folder is of one of them alone: without
+    ``force`` the first stays and the others are refused, with it the last stays.
 
     Raises
     ------
@@ -50,17 +50,19 @@ def write_folder(folder: Path, files: Mapping[str, bytes], force: bool) -> None:
         fresh = work / "new"
         fresh.mkdir()
         for name, data in files.items():
-            (fresh / name).write_bytes(data)
-        _move_into_place(fresh, folder.absolute(), work / "old")
+            _write(fresh / name, data)
+        _move_into_place(fresh, folder, work / OLD, force)
 
 
 def check_file(file: Path, force: bool) -> None:
-    """Refuse early to write over a file.
+    """Refuse early to write over a file, or where the system does not let us.
 
     Raises
     ------
     UsageError
         When the file exists and ``force`` is not given, or it is no file.
+    OutputError
+        When nothing can be written there.
     """
     if not _stands(file):
         return
@@ -83,26 +85,53 @@ def write_file(file: Path, data: bytes, force: bool) -> None:
     check_file(file, force)
     with _beside(file) as work:
         fresh = work / "new"
-        fresh.write_bytes(data)
-        fresh.replace(file.absolute())
+        _write(fresh, data)
+        if force or not _linked(fresh, file):
+            fresh.replace(file.absolute())
 
 
 def _stands(place: Path) -> bool:
-    """Whether there is something already, a broken link too."""
+    """Whether there is something already, a broken link too, once leftovers are cleared away."""
+    target = place.absolute()
     try:
-        return place.exists() or place.is_symlink()
+        place.exists()  # a name that no system takes
+        recover(target)
+        if os.path.lexists(target):
+            return True
+        _check_writable(target.parent)
     except OSError as error:
         raise _cannot_write(place, error) from error
+    return False
+
+
+def _check_writable(folder: Path) -> None:
+    """See whether a folder can be made or written to, before hours are spent on its content."""
+    while not os.path.lexists(folder):
+        folder = folder.parent
+    if not folder.is_dir():
+        raise NotADirectoryError(f"{folder} is no folder")
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise PermissionError(f"no permission to write to {folder}")
+
+
+def _check_ours(folder: Path, place: Path, force: bool) -> None:
+    """Refuse to replace what is no folder of ours; ``place`` is where it stands for the user."""
+    if not folder.is_dir() or folder.is_symlink():
+        raise UsageError(f"{place} exists and is no folder; choose another with --out")
+    ours = any((folder / mark).is_file() for mark in _MARKS) or not any(folder.iterdir())
+    if force and not ours:
+        raise UsageError(
+            f"{place} holds no {' or '.join(_MARKS)}, so --force will not replace it; "
+            "choose another with --out"
+        )
 
 
 @contextlib.contextmanager
 def _beside(place: Path) -> Iterator[Path]:
     """Give a folder to work in beside a place, and say so where the system does not let us."""
-    target = place.absolute()
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix=f".{target.name}-", dir=target.parent) as work:
-            yield Path(work)
+        with working_beside(place.absolute()) as work:
+            yield work
     except OSError as error:
         raise _cannot_write(place, error) from error
 
@@ -112,15 +141,54 @@ def _cannot_write(place: Path, error: OSError) -> OutputError:
     return OutputError(f"cannot write {place}: {reason}; choose another place with --out")
 
 
-def _move_into_place(fresh: Path, target: Path, aside: Path) -> None:
-    had_one = target.is_dir()
-    if had_one:
-        target.rename(aside)
+def _write(path: Path, data: bytes) -> None:
+    """Write a file through to the disk: it shall be whole wherever its folder is seen."""
+    with path.open("xb") as file:
+        file.write(data)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def _move_into_place(fresh: Path, folder: Path, aside: Path, force: bool) -> None:
+    """Put the fresh folder in its place, and what stands there aside.
+
+    No system renames a folder onto one that holds something: what another process puts there
+    meanwhile is either set aside whole or left alone.
+    """
+    target = folder.absolute()
     try:
-        fresh.rename(target)
-    except OSError:
-        if had_one:
+        for _ in range(_TRIES):
+            if force:
+                _set_aside(target, folder, aside)
+            try:
+                fresh.rename(target)
+                return
+            except OSError:
+                if not os.path.lexists(target):
+                    raise
+            if not force:
+                check_free(folder, force)
+        raise OSError("others write there all the time")
+    except BaseException:  # an interrupt too: better what was there than nothing
+        if os.path.lexists(aside) and not os.path.lexists(target):
             aside.rename(target)
         raise
-    with contextlib.suppress(OSError):
-        shutil.rmtree(aside)
+
+
+def _set_aside(target: Path, folder: Path, aside: Path) -> None:
+    shutil.rmtree(aside, ignore_errors=True)  # what others have replaced since
+    with contextlib.suppress(FileNotFoundError):
+        target.rename(aside)
+        _check_ours(aside, folder, force=True)
+
+
+def _linked(fresh: Path, file: Path) -> bool:
+    """Give a file its name unless that is taken; False where the disk knows no links."""
+    try:
+        os.link(fresh, file.absolute())
+    except FileExistsError:
+        check_file(file, force=False)
+        raise
+    except OSError:
+        return False
+    return True

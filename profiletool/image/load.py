@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import struct
 import warnings
@@ -14,10 +15,12 @@ from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
 
 from profiletool.errors import UnreadableInput, UsageError
+from profiletool.image.structure import check_structure
 from profiletool.reading import check_file
 from profiletool.records import MM_PER_INCH, Picture
 
 MAX_PIXELS = 64_000_000
+MAX_PIXELS_OF = {"WEBP": 40_000_000}  # decoded in several copies: they shall fit in a gibibyte
 MAX_BYTES = 50_000_000
 _LUMA = np.array([299, 587, 114])  # thousandths
 MIN_SIDE_PX = 16
@@ -54,7 +57,7 @@ def load_picture(path: Path) -> Picture:
     Parameters
     ----------
     path : Path
-        A PNG, JPEG, TIFF, BMP or WebP file of at most 50 MB and 64 megapixels.
+        A PNG, JPEG, TIFF, BMP or WebP file of at most 50 MB and 64 megapixels (WebP: 40).
 
     Returns
     -------
@@ -84,7 +87,7 @@ def load_picture(path: Path) -> Picture:
         except UnidentifiedImageError:
             _refuse(path, f"not a picture that can be read{_looks_like(path)}; {_ASK_FOR}")
         except Image.DecompressionBombError:
-            _refuse_size(path)
+            _refuse_size(path, MAX_PIXELS)
         except _DAMAGE as error:
             _refuse(path, f"damaged or truncated ({error}); export the picture again")
     return Picture(
@@ -136,13 +139,15 @@ def _refuse(path: Path, reason: str) -> NoReturn:
     raise UnreadableInput(" ".join(f"{path}: {reason}".split())) from None
 
 
-def _refuse_size(path: Path) -> NoReturn:
-    _refuse(path, f"more than {MAX_PIXELS // 1_000_000} megapixels; scale the picture down")
+def _refuse_size(path: Path, most: int) -> NoReturn:
+    _refuse(path, f"more than {most // 1_000_000} megapixels; scale the picture down")
 
 
 def _check_file(path: Path) -> None:
     try:
         check_file(path, MAX_BYTES, "a picture")
+        with contextlib.suppress(OSError, OverflowError, struct.error):  # the decoder will tell
+            check_structure(path)
     except UnreadableInput as error:
         _refuse(path, str(error))
     if path.stat().st_size == 0:
@@ -151,8 +156,9 @@ def _check_file(path: Path) -> None:
 
 def _check_size(path: Path, image: Image.Image) -> None:
     width, height = image.size
-    if width * height > MAX_PIXELS:
-        _refuse_size(path)
+    most = MAX_PIXELS_OF.get(image.format or "", MAX_PIXELS)
+    if width * height > most:
+        _refuse_size(path, most)
     if min(width, height) < MIN_SIDE_PX:
         _refuse(path, f"only {width} x {height} pixels; use a larger picture")
 

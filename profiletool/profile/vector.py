@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from profiletool.errors import NoObject, UnreadableInput
 from profiletool.profile.vector_chain import Chain, choose
 from profiletool.profile.vector_csv import read_csv
@@ -15,6 +17,7 @@ from profiletool.records import FloatArray
 
 SUFFIXES = (".dxf", ".svg", ".csv")
 MAX_BYTES = 20_000_000
+MAX_CLOSE_PAIRS = 2e7  # of pieces of a line that might cross
 
 
 @dataclass(frozen=True)
@@ -86,6 +89,18 @@ def _check(chain: Chain) -> None:
 
     if len(chain.points) < 3:
         raise UnreadableInput(f"only {len(chain.points)} distinct points; a profile needs 3")
+    _check_tangle(chain)
     line = shapely.LinearRing(chain.points) if chain.closed else shapely.LineString(chain.points)
     if not line.is_simple:
         raise NoObject("the line crosses or touches itself; redraw it as one plain line")
+
+
+def _check_tangle(chain: Chain) -> None:
+    """Refuse a line whose pieces lie across each other so much that crossings take for ever."""
+    import shapely
+
+    pieces = shapely.linestrings(np.stack([chain.points[:-1], chain.points[1:]], axis=1))
+    every = max(1, len(pieces) // 200)
+    tree = shapely.STRtree(pieces)
+    if every * sum(len(tree.query(piece)) for piece in pieces[::every]) > MAX_CLOSE_PAIRS:
+        raise NoObject("the line runs to and fro too densely; redraw it as one plain line")

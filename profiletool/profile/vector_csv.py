@@ -41,8 +41,8 @@ def read_csv(data: bytes) -> Chain:
             continue
         header_allowed = False
         rows.append(_point(fields, number))
-    if len(rows) > MAX_POINTS:
-        raise UnreadableInput(f"more than {MAX_POINTS} points; thin them out")
+        if len(rows) > MAX_POINTS:
+            raise UnreadableInput(f"more than {MAX_POINTS} points; thin them out")
     if len(rows) < 3:
         raise UnreadableInput(f"only {len(rows)} points; a profile needs 3 at least")
     return clean(np.array(rows), closed=False)

@@ -27,8 +27,10 @@ if TYPE_CHECKING:
 
 KINDS = ("LINE", "ARC", "CIRCLE", "ELLIPSE", "LWPOLYLINE", "POLYLINE", "SPLINE")
 _NEVER_PLOTTED = "defpoints"  # where CAD programs keep the points of dimensions
-MAX_SPLINE_POINTS = 20_000
-MAX_LINES = 500_000
+MAX_SPLINE_POINTS = 15_000  # of all splines: they are slow
+MAX_LINES = 300_000  # of text
+MAX_BINARY_BYTES = 2_000_000
+MAX_ENTITIES = 10_000
 _ARC_PIECES = 16  # Bézier curves per full ellipse: off by less than 1e-7 of the radius
 
 # What ezdxf throws on damaged data, apart from its own DXFError.
@@ -75,13 +77,13 @@ def read_dxf(path: Path) -> list[Chain]:
     """
     from ezdxf.lldxf.const import DXFError
 
-    with path.open("rb") as file:
-        if file.read().count(b"\n") > MAX_LINES:
-            raise UnreadableInput(f"more than {MAX_LINES} lines of text; delete what is no profile")
+    _check_length(path.read_bytes())
     try:
         drawing = _open(path)
         factor = _mm_per_unit(drawing)
         entities = _visible(drawing)
+        if len(entities) > MAX_ENTITIES:
+            raise UnreadableInput(f"more than {MAX_ENTITIES} lines and curves; simplify it")
         with np.errstate(all="ignore"):  # absurd numbers: the outcome is checked
             pieces = _pieces(entities, factor)
         blocks = not entities and bool(drawing.modelspace().query("INSERT"))
@@ -90,6 +92,16 @@ def read_dxf(path: Path) -> list[Chain]:
     if blocks:
         raise NoObject("the drawing holds blocks alone; explode them and save again")
     return join(pieces)
+
+
+def _check_length(data: bytes) -> None:
+    """Refuse what would take for ever to parse."""
+    if max(data.count(b"\n"), data.count(b"\r")) > MAX_LINES:
+        raise UnreadableInput(f"more than {MAX_LINES} lines of text; delete what is no profile")
+    if data.startswith(b"AutoCAD Binary DXF") and len(data) > MAX_BINARY_BYTES:
+        raise UnreadableInput(
+            f"more than {MAX_BINARY_BYTES / 1e6:g} MB of binary DXF; delete what is no profile"
+        )
 
 
 def _open(path: Path) -> Drawing:
@@ -131,12 +143,24 @@ def _visible(drawing: Drawing) -> list[Any]:
 
 
 def _pieces(entities: Iterable[Any], factor: float) -> list[Chain]:
-    left, pieces = MAX_POINTS, []
+    left, left_of_splines, pieces = MAX_POINTS, MAX_SPLINE_POINTS, []
     for entity in entities:
+        spline = entity.dxftype() == "SPLINE"
         points = np.array(
-            [(v.x, v.y) for v in islice(_flattened(entity, factor), left)], dtype=np.float64
+            [
+                (v.x, v.y)
+                for v in islice(
+                    _flattened(entity, factor), min(left, left_of_splines) if spline else left
+                )
+            ],
+            dtype=np.float64,
         ).reshape(-1, 2)
         left -= len(points)
+        left_of_splines -= len(points) if spline else 0
+        if left_of_splines <= 0:
+            raise UnreadableInput(
+                f"splines of more than {MAX_SPLINE_POINTS} points; export them as polylines"
+            )
         if left <= 0:
             raise UnreadableInput(f"more than {MAX_POINTS} points; simplify the drawing")
         if len(points) > 1:
@@ -153,10 +177,8 @@ def _flattened(entity: Any, factor: float) -> Iterable[Any]:
         # Its path form is exact for cubic splines only.
         tool = entity.construction_tool()
         _check(tool.control_points, factor)
-        points = list(islice(tool.flattening(distance, segments=4), MAX_SPLINE_POINTS))
-        if len(points) == MAX_SPLINE_POINTS:
-            raise UnreadableInput("a spline that never comes to rest; export it as a polyline")
-        return points
+        flat: Iterable[Any] = tool.flattening(distance, segments=4)
+        return flat
     if entity.dxftype() == "POLYLINE" and not (entity.is_2d_polyline or entity.is_3d_polyline):
         return ()
     path = make_path(entity, segments=_ARC_PIECES)

@@ -89,14 +89,19 @@ def test_known_colours_of_unusual_files(shared: Path) -> None:
     assert set(np.unique(background)) == {0, 255}
 
 
-@pytest.mark.parametrize(("mode", "name"), [("RGBA", "a.png"), ("CMYK", "a.jpg")])
-def test_largest_picture_fits_in_a_gibibyte(tmp_path: Path, mode: str, name: str) -> None:
+@pytest.mark.parametrize(
+    ("mode", "name", "side"),
+    [("RGBA", "a.png", 8000), ("CMYK", "a.jpg", 8000), ("RGBA", "a.webp", 6320)],
+)
+def test_largest_picture_fits_in_a_gibibyte(
+    tmp_path: Path, mode: str, name: str, side: int
+) -> None:
     folder = tmp_path / "large"
     folder.mkdir()
-    Image.new(mode, (8000, 8000), 0).save(folder / name, compress_level=1)
+    Image.new(mode, (side, side), 0).save(folder / name, compress_level=1)
     run = subprocess.run(
         [sys.executable, "-c", PROBE, str(folder)], capture_output=True, text=True, check=True
     )
     seen, memory = json.loads(run.stdout)
-    assert seen[name][0] == [8000, 8000, 3]
+    assert seen[name][0] == [side, side, 3]
     assert memory < 1 << 30

@@ -367,6 +367,11 @@ def wide_gap(msp, _):
     msp.add_line((0.2, -20), (5, -50))
 
 
+def three_in_one_place(msp, _):
+    for end in ((0, 20), (20, 0), (-20, -5)):
+        msp.add_line((0, 0), end)
+
+
 def block_alone(msp, document):
     document.blocks.new("A").add_circle((0, 0), 5)
     msp.add_blockref("A", (0, 0))
@@ -377,6 +382,7 @@ def block_alone(msp, document):
     [
         (two_circles, "several separate lines (2)"),
         (wide_gap, "several separate lines (2)"),
+        (three_in_one_place, "several separate lines (3)"),
         (block_alone, "explode"),
         (lambda msp, _: msp.add_text("nothing"), "nothing drawable"),
         (
@@ -597,10 +603,10 @@ def test_svg_without_a_profile(load, text, words):
 
 
 def test_svg_too_much(load, monkeypatch):
-    monkeypatch.setattr("profiletool.profile.vector_svg.MAX_NUMBERS", 5)
+    monkeypatch.setattr("profiletool.profile.svg_tree.MAX_NUMBERS", 5)
     with pytest.raises(UnreadableInput, match="more than 5 numbers"):
         load("a.svg", svg('<path d="M0 0 9 0 9 9z"/>'))
-    monkeypatch.setattr("profiletool.profile.vector_svg.MAX_ELEMENTS", 5)
+    monkeypatch.setattr("profiletool.profile.svg_tree.MAX_ELEMENTS", 5)
     with pytest.raises(UnreadableInput, match="more than 5 elements"):
         load("a.svg", svg("<g/>" * 10))
 
