@@ -20,8 +20,7 @@ from profiletool.report.plots import Mark, theta_figure, trajectories_figure
 from profiletool.report.tradeoff import trade_off_csv, trade_off_figure
 from profiletool.report.vtu import write_pvd, write_vtu
 from profiletool.template.dxf import Version, write_dxf
-from profiletool.template.fingers import NoClamp
-from profiletool.template.kinds import Wish
+from profiletool.template.kinds import PLAIN, Wish
 from profiletool.template.layout import build_sheet
 from profiletool.template.mounting import mounting_drawing
 from profiletool.template.pdf import Paper, write_pdf
@@ -31,7 +30,7 @@ from profiletool.verify import Run
 
 def files_of(
     result: Result,
-    wish: Wish = Wish(),  # noqa: B008
+    wish: Wish = PLAIN,
     paper: Paper = "a4",
 ) -> dict[str, bytes]:
     """Make every file of the output folder: name to content.
@@ -150,7 +149,7 @@ def formula_marks(design: Design) -> tuple[Mark, ...]:
 
 def template_files(
     design: Design,
-    wish: Wish = Wish(),  # noqa: B008
+    wish: Wish = PLAIN,
     paper: Paper = "a4",
     version: Version = "R2000",
 ) -> dict[str, bytes]:
@@ -164,15 +163,9 @@ def template_files(
 
 
 def mounting_files(result: Result, scene: Scene, paper: Paper = "a4") -> dict[str, bytes]:
-    """Draw how the tube is clamped beside its object, and the palm that is drilled for it.
-
-    No files where the first cut leaves nothing to clamp.
-    """
+    """Draw how the tube is clamped beside its object, and the palm that is drilled for it."""
     bent = scene.bent if scene.fe is None else scene.fe
-    try:
-        drawing = mounting_drawing(result.design, result.subject.profile, scene.straight, bent)
-    except NoClamp:
-        return {}
+    drawing = mounting_drawing(result.design, result.subject.profile, scene.straight, bent)
     return {
         "mounting.dxf": write_dxf(drawing),
         "mounting.pdf": write_pdf(drawing, paper, drawing.parts),

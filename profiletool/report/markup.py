@@ -92,11 +92,6 @@ def signed(value: float, decimals: int = 1, unit: str = "") -> str:
     return written.replace("-", MINUS) + unit
 
 
-def short(value: float) -> str:
-    """Write a number with at most one decimal."""
-    return f"{value:.1f}".removesuffix(".0")
-
-
 def adopted(element: str, prefix: str) -> Markup:
     """Take an SVG document or element into a page, its ids made its own by a prefix."""
     element = element[element.index("<svg") :].strip()

@@ -8,8 +8,9 @@ from math import pi
 
 from profiletool.joints.limits import named
 from profiletool.records import Design, Verification
-from profiletool.report.markup import Markup, joined, pairs, short, signed, tag
+from profiletool.report.markup import Markup, joined, pairs, signed, tag
 from profiletool.report.tables import pressure_table, slit_table
+from profiletool.template.labels import short, times
 from profiletool.template.unroll import off_mesh, seam_at, sheet_size
 
 _CAP_MM = 4.0  # rubber beyond the core's end, which closes the tube (the paper's)
@@ -135,7 +136,7 @@ def _roll(design: Design) -> Markup:
         "p",
         f"Glue the start edge along the tube {_side(seam)} ({short(seam)}°; 270° faces the "
         "object, angles run counter-clockwise as seen from the closed end). Lay the sheet face up "
-        f"with the tube on it and roll it {_times(gauze.turns)}, tight and square: the slits of "
+        f"with the tube on it and roll it {times(gauze.turns)}, tight and square: the slits of "
         "all turns must lie over each other.",
     )
 
@@ -278,7 +279,3 @@ def _side(angle_deg: float) -> str:
 def _way(heading_deg: float) -> str:
     """Say in words where a direction points; up and down only where it is no level one."""
     return _WAYS[round(heading_deg / 45.0) % 8]
-
-
-def _times(turns: int) -> str:
-    return {1: "once", 2: "twice"}.get(turns, f"{turns} times")

@@ -8,7 +8,8 @@ from math import pi
 
 from profiletool import __version__
 from profiletool.records import Design, FeState, FloatArray, Joint, Verification
-from profiletool.report.markup import Markup, joined, pairs, short, signed, table, tag
+from profiletool.report.markup import Markup, joined, pairs, signed, table, tag
+from profiletool.template.labels import short
 from profiletool.template.unroll import slit_rows, slits
 
 _NOTHING = "–"

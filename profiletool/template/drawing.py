@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -27,6 +28,7 @@ COLOURS: dict[LayerName, tuple[int, str]] = {
 DECIMALS = 6
 # Curves are drawn as chords that lie off them by no more than this.
 FLATTENING_MM = 0.01
+RULER_MM = 100.0
 
 
 @dataclass(frozen=True)
@@ -116,7 +118,7 @@ class Drawing:
     drawn: tuple[Line, ...]
     texts: tuple[Text, ...]
 
-    @property
+    @cached_property
     def layers(self) -> tuple[Layer, ...]:
         """All that is to be drawn, lettering as strokes, layer by layer, in the order to draw."""
         found: dict[LayerName, list[Line]] = {name: [] for name in COLOURS}
@@ -132,9 +134,7 @@ class Drawing:
     @property
     def bounds(self) -> Box:
         """The extent of everything drawn: x min, y min, x max, y max, mm."""
-        points = np.concatenate([line.points for layer in self.layers for line in layer.lines])
-        (x0, y0), (x1, y1) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
-        return x0, y0, x1, y1
+        return extent([line for layer in self.layers for line in layer.lines])
 
 
 def arrow(
@@ -152,6 +152,13 @@ def arrow(
     return tuple(lines)
 
 
+def extent(lines: Sequence[Line]) -> Box:
+    """Return x min, y min, x max, y max of ``lines``, mm."""
+    points = np.concatenate([line.points for line in lines])
+    (x0, y0), (x1, y1) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+    return x0, y0, x1, y1
+
+
 def polyline(layer: LayerName, *points: Sequence[float]) -> Line:
     """Return an open line through ``points``, (x, y) mm each."""
     return Line(layer, np.array(points, dtype=float))
@@ -163,6 +170,15 @@ def circle(layer: LayerName, x: float, y: float, radius: float) -> Line:
     around = np.linspace(0.0, 2 * np.pi, int(np.ceil(2 * np.pi / step)), endpoint=False)
     ring = np.stack([x + radius * np.cos(around), y + radius * np.sin(around)], axis=1)
     return Line(layer, ring, closed=True)
+
+
+def ruler(left: float, y: float) -> tuple[Line, ...]:
+    """Return a bar of `RULER_MM` from (``left``, ``y``) on, with ticks above it."""
+    lines = [polyline("REF", (left, y), (left + RULER_MM, y))]
+    for k in range(11):
+        x, length = left + k * RULER_MM / 10, 3.0 if k % 5 == 0 else 1.5
+        lines.append(polyline("REF", (x, y + length), (x, y)))
+    return tuple(lines)
 
 
 def wrapped(text: str, height: float, width: float) -> list[str]:

@@ -26,22 +26,18 @@ _NO_GAIN = 0.01  # a tube closer to upright (0.6 deg) comes no farther from the 
 _STEEP = 0.5  # a palm whose normal is farther from upright (60 deg) is not placed by the axis
 
 
-class NoClamp(ValueError):
-    """There is nothing of the tube that could be held."""
-
-
 def clamp_of(design: Design, profile: Profile, straight: Shape) -> Clamp:
     """Return what is held of a tube at rest: up to the first joint's cut.
 
     Raises
     ------
-    NoClamp
+    ValueError
         The first joint's cut leaves nothing to hold.
     """
     first = design.joints[0].openF_mm if design.joints else 0.0
     length = design.tube.root_mm - first / 2
     if not length > 0.0:
-        raise NoClamp("the first joint's cut leaves no root to clamp")
+        raise ValueError("the first joint's cut leaves no root to clamp")
     along = straight.facing[-1] - straight.facing[0]
     outward = straight.far[0] - straight.facing[0]
     diameter = float(np.hypot(*outward))

@@ -32,6 +32,9 @@ class Wish:
     date: str = ""
 
 
+PLAIN = Wish()
+
+
 @dataclass(frozen=True)
 class Kind:
     """What a kind of template says.

@@ -101,6 +101,11 @@ def short(value: float) -> str:
     return f"{round(value, 1):g}"
 
 
+def times(turns: int) -> str:
+    """Say how often."""
+    return {1: "once", 2: "twice"}.get(turns, f"{turns} times")
+
+
 def _options(
     design: Design, joint: Joint, roll: Roll, turns: Sequence[int]
 ) -> Iterator[tuple[Text, ...]]:

@@ -11,7 +11,7 @@ import numpy as np
 from profiletool.records import Design, FloatArray, Joint
 from profiletool.template.drawing import Box, Drawing, Line
 from profiletool.template.kerf import check_kerf, outline_path, slit_paths
-from profiletool.template.kinds import KINDS, Wish
+from profiletool.template.kinds import KINDS, PLAIN, Wish
 from profiletool.template.labels import joint_labels
 from profiletool.template.margins import LEFT_MM, RIGHT_MM, gaps, margins
 from profiletool.template.notes import notes, title_of
@@ -56,7 +56,7 @@ class Sheet:
     seam: SeamChoice
 
 
-def build_sheet(design: Design, wish: Wish = Wish()) -> Sheet:  # noqa: B008
+def build_sheet(design: Design, wish: Wish = PLAIN) -> Sheet:
     """Return a template of ``design``, its seam where the design puts it.
 
     Raises

@@ -11,12 +11,12 @@ from profiletool.profile.symmetry import symmetry_of
 from profiletool.records import Design, FloatArray, Profile, Shape
 from profiletool.template.callouts import lettered
 from profiletool.template.draughting import no_line_twice
-from profiletool.template.drawing import Drawing
+from profiletool.template.drawing import Drawing, extent
 from profiletool.template.fingers import LEAST_CLAMP_MM, clamp_of, obstacle, palm_of
 from profiletool.template.labels import short
 from profiletool.template.notes import scale_bar, title_block, title_lines, title_of
 from profiletool.template.plan_view import plan_view
-from profiletool.template.side_view import COLUMN_MM, Mounted, bounds, plates_of, side_view
+from profiletool.template.side_view import COLUMN_MM, Mounted, plates_of, side_view
 
 TITLE = "Mounting"
 LEAST_WIDTH_MM = 150.0
@@ -51,7 +51,7 @@ def mounting_drawing(design: Design, profile: Profile, straight: Shape, bent: Sh
 
     Raises
     ------
-    NoClamp
+    ValueError
         The first joint's cut leaves no root to clamp.
     """
     clamp = clamp_of(design, profile, straight)
@@ -60,7 +60,7 @@ def mounting_drawing(design: Design, profile: Profile, straight: Shape, bent: Sh
     palm = palm_of(clamp, outline, symmetry)
     mounted = Mounted(design, profile, straight, bent, symmetry, clamp, palm)
     side = side_view(mounted)
-    _, bottom, _, _ = bounds(side.lines)
+    _, bottom, _, _ = extent(side.lines)
     x = palm.origin[0] if palm.on_axis else clamp.start[0]
     place = np.array([x, bottom - BLOCK_MM - COLUMN_MM - palm.half_width_mm])
     plan = plan_view(mounted, place)

@@ -9,23 +9,23 @@ import numpy as np
 
 from profiletool.records import TOWARD_DEG, Design
 from profiletool.template.drawing import (
+    RULER_MM,
     Box,
     Drawing,
     Line,
     Text,
     arrow,
     circle,
-    polyline,
+    ruler,
     wrapped,
 )
 from profiletool.template.kinds import KINDS, Wish
-from profiletool.template.labels import short
+from profiletool.template.labels import short, times
 from profiletool.template.strokes import text_width
 from profiletool.template.unroll import SeamChoice, off_mesh, sheet_size, slit_rows
 
 TITLE_MM, ALARM_MM, BODY_MM, SMALL_MM = 5.0, 6.0, 3.0, 2.5
 LINE_SPACING = 1.7
-BAR_MM = 100.0
 CHECK_BOX_MM = (100.0, 50.0)
 END_VIEW_RADIUS_MM = 11.0
 LEGEND_GAP_MM = 6.0
@@ -108,11 +108,8 @@ def reference(left: float, top: float) -> tuple[tuple[Line, ...], tuple[Text, ..
 
 def scale_bar(left: float, y: float) -> tuple[tuple[Line, ...], Text]:
     """Return the 100 mm bar from (``left``, ``y``) on: its ticks above, its name below."""
-    lines = [polyline("REF", (left, y), (left + BAR_MM, y))]
-    for k in range(11):
-        length = 3.0 if k % 5 == 0 else 1.5
-        lines.append(polyline("REF", (left + 10 * k, y + length), (left + 10 * k, y)))
-    return tuple(lines), Text("REF", "100 mm", left + BAR_MM / 2, y - 4.5, BODY_MM, "centre")
+    name = Text("REF", "100 mm", left + RULER_MM / 2, y - 4.5, BODY_MM, "centre")
+    return ruler(left, y), name
 
 
 def legend(
@@ -122,10 +119,9 @@ def legend(
 ) -> tuple[Text, ...]:
     """Return the numbered working steps and the key within ``frame`` (left, right, top), mm."""
     left, right, top = frame
-    turns = design.gauze.turns
     filled = {
         "seam": short(design.gauze.seam_deg),
-        "times": {1: "once", 2: "twice"}.get(turns, f"{turns} times"),
+        "times": times(design.gauze.turns),
         "diameter": f"{design.tube.outer_diameter_mm:g}",
         "size": " x ".join(short(side) for side in sheet_size(design.tube, design.gauze)),
     }

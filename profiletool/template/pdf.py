@@ -13,7 +13,17 @@ from typing import Literal
 import numpy as np
 from reportlab.pdfgen.canvas import Canvas
 
-from profiletool.template.drawing import COLOURS, Box, Drawing, LayerName, Line, Text, polyline
+from profiletool.template.drawing import (
+    COLOURS,
+    RULER_MM,
+    Box,
+    Drawing,
+    Line,
+    Text,
+    extent,
+    polyline,
+    ruler,
+)
 
 Paper = Literal["a4", "letter"]
 Size = tuple[float, float]
@@ -22,15 +32,12 @@ PAPERS_MM: dict[Paper, Size] = {"a4": (210.0, 297.0), "letter": (215.9, 279.4)}
 PT_PER_MM = 72 / 25.4
 MARGIN_MM = 5.0  # printers do not reach the edge of the paper
 OVERLAP_MM = 10.0  # of neighbouring tiles
-PIECE: tuple[LayerName, ...] = ("CUT_OUTER", "CUT_INNER", "MARK")
 CUT_MM, PEN_MM = 0.15, 0.18  # widths of cuts, and of all that is to be read
 INK_MM = PEN_MM / 2  # what a line covers beside it
 DECIMALS = 4  # of the coordinates, mm
 FOOTER_MM, BAR_ROW_MM = 6.0, 5.0  # heights of the rows below the drawing
 LETTER_MM = 2.2
-BAR_MM = 100.0
 CROSS_MM = 4.0  # arm; shorter than half the overlap, so that neighbours show all of it
-BLOCK_MM = 8.0  # between the notes from above the piece and those from below it
 
 
 @dataclass(frozen=True)
@@ -62,9 +69,8 @@ def write_pdf(drawing: Drawing, paper: Paper = "a4", parts: Sequence[Drawing] = 
     drawing : Drawing
     paper : {"a4", "letter"}
     parts : sequence of Drawing
-        What stands apart where the drawing does not fit one page, in the order of the pages; a
-        single one is tiled as it is. By default the piece (CUT_OUTER, CUT_INNER and MARK), then
-        all else.
+        What stands apart where the drawing does not fit one page, in the order of the pages; by
+        default the drawing is tiled as it is.
 
     Returns
     -------
@@ -95,7 +101,7 @@ def _pages(drawing: Drawing, paper: Size, parts: Sequence[Drawing]) -> list[_Pag
     pages = _laid_out(whole, paper)
     if len(pages) == 1:
         return pages
-    apart = [_lines(part) for part in parts] if parts else _by_layer(whole)
+    apart = [_lines(part) for part in parts or (drawing,)]
     pages = []
     rows = 0
     for lines in filter(None, apart):
@@ -106,21 +112,6 @@ def _pages(drawing: Drawing, paper: Size, parts: Sequence[Drawing]) -> list[_Pag
 
 def _lines(drawing: Drawing) -> tuple[Line, ...]:
     return tuple(line for layer in drawing.layers for line in layer.lines)
-
-
-def _by_layer(lines: Sequence[Line]) -> tuple[tuple[Line, ...], tuple[Line, ...]]:
-    """Return the piece and its notes; notes above it come down to those below it."""
-    piece = tuple(line for line in lines if line.layer in PIECE)
-    notes = tuple(line for line in lines if line.layer not in PIECE)
-    if not piece or not notes:
-        return piece, notes
-    _, low, _, high = _extent(piece)
-    above = tuple(line for line in notes if line.points[:, 1].min() >= high)
-    below = tuple(line for line in notes if line.points[:, 1].max() <= low)
-    if not above or not below or len(above) + len(below) < len(notes):
-        return piece, notes  # some belong beside the piece: their places say something
-    drop = np.array([0.0, _extent(above)[1] - _extent(below)[3] - BLOCK_MM])
-    return piece, below + tuple(replace(line, points=line.points - drop) for line in above)
 
 
 def _laid_out(lines: Sequence[Line], paper: Size, before: int = 0) -> list[_Page]:
@@ -142,7 +133,7 @@ def _measurable(lines: Sequence[Line]) -> bool:
     return any(
         line.layer == "REF"
         and len(line.points) == 2
-        and math.isclose(math.dist(*line.points), BAR_MM)
+        and math.isclose(math.dist(*line.points), RULER_MM)
         for line in lines
     )
 
@@ -202,8 +193,7 @@ def _crosses(x: float, y: float, step_x: float, step_y: float) -> tuple[Line, ..
 
 def _extent(lines: Sequence[Line]) -> Box:
     """Return the extent of ``lines`` with the ink beside them."""
-    points = np.concatenate([line.points for line in lines])
-    (x0, y0), (x1, y1) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+    x0, y0, x1, y1 = extent(lines)
     return x0 - INK_MM, y0 - INK_MM, x1 + INK_MM, y1 + INK_MM
 
 
@@ -232,22 +222,13 @@ def _footer(page: _Page, title: str, number: str) -> list[Line]:
     end = Text("REF", " - ".join(said), right, y, LETTER_MM, "right")
     name = Text("REF", title, left, y, LETTER_MM)
     texts = [end, _shortened(name, end.box[0] - 2 * LETTER_MM - left)]
-    lines = []
+    lines: list[Line] = []
     if page.bar:
         y += FOOTER_MM - 1.0
-        lines += _bar(left, y)
-        texts.append(Text("REF", "100 mm", left + BAR_MM + LETTER_MM, y, LETTER_MM))
+        lines += ruler(left, y)
+        texts.append(Text("REF", "100 mm", left + RULER_MM + LETTER_MM, y, LETTER_MM))
         texts.append(Text("REF", page.tile, right, y, 2 * LETTER_MM, "right"))
     return lines + [Line("REF", stroke) for text in texts for stroke in text.lines()]
-
-
-def _bar(left: float, y: float) -> list[Line]:
-    """Return the 100 mm bar from (``left``, ``y``) on, with its ticks."""
-    lines = [polyline("REF", (left, y), (left + BAR_MM, y))]
-    for k in range(11):
-        x, length = left + k * BAR_MM / 10, 3.0 if k % 5 == 0 else 1.5
-        lines.append(polyline("REF", (x, y), (x, y + length)))
-    return lines
 
 
 def _shortened(text: Text, width: float) -> Text:

@@ -21,7 +21,7 @@ from profiletool.template.draughting import (
     pieces,
     smooth,
 )
-from profiletool.template.drawing import Box, Line, Text, arrow, circle, polyline
+from profiletool.template.drawing import Box, Line, Text, arrow, circle, extent, polyline
 from profiletool.template.palm import Clamp, Palm
 
 PLATE_MM = 5.0  # the palm is drawn so thick; whatever is stiff will do
@@ -77,7 +77,7 @@ class Mounted:
 def side_view(mounted: Mounted) -> View:
     """Return the side view in the object frame, with the dimensions around it."""
     shapes = _shapes(mounted)
-    lines, texts = _dimensions(mounted, bounds(shapes))
+    lines, texts = _dimensions(mounted, extent(shapes))
     angle, heading = _slope(mounted)
     view_arrow, letter = _view_arrow(mounted.palm)
     return View(
@@ -85,13 +85,6 @@ def side_view(mounted: Mounted) -> View:
         texts,
         (letter, *_callouts(mounted), heading),
     )
-
-
-def bounds(lines: tuple[Line, ...]) -> Box:
-    """Return x min, y min, x max, y max of all lines, mm."""
-    points = np.concatenate([line.points for line in lines])
-    (x0, y0), (x1, y1) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
-    return x0, y0, x1, y1
 
 
 def plates_of(palm: Palm) -> tuple[FloatArray, ...]:

@@ -113,6 +113,7 @@ def _glyph(char: str) -> tuple[FloatArray, ...]:
     )
 
 
+@cache
 def _width(char: str) -> int:
     """Return the width of one character in grid units, the gap after it left out."""
     strokes = _glyph(char)

@@ -6,7 +6,7 @@ import base64
 import re
 import time
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -192,6 +192,18 @@ def sheet(width, height, title="Plate: part.svg", above=10):
     return Drawing(title, (*plate.drawn, bar), texts)
 
 
+def printed(drawing, paper="a4"):
+    """Read the pages of a drawing whose piece and notes, closed up, stand apart if they must."""
+    piece = tuple(line for line in drawing.drawn if line.layer in PIECE)
+    notes = tuple(line for line in drawing.drawn if line.layer not in PIECE)
+    marks = tuple(text for text in drawing.texts if text.layer in PIECE)
+    words = tuple(
+        replace(text, y=min(text.y, 0.0)) for text in drawing.texts if text.layer not in PIECE
+    )
+    parts = Drawing(drawing.title, piece, marks), Drawing(drawing.title, notes, words)
+    return read(write_pdf(drawing, paper, parts))
+
+
 DRAWINGS = {
     **{b.__name__: lambda b=b: build_sheet(b()).drawing for b in (bulb, long_tube, tight)},
     "small": lambda: sheet(60, 40),
@@ -208,7 +220,7 @@ DRAWINGS = {
 def written(request):
     name, paper = request.param
     drawing = DRAWINGS[name]()
-    return drawing, PAPERS[paper], read(write_pdf(drawing, paper))
+    return drawing, PAPERS[paper], printed(drawing, paper)
 
 
 def test_pages_are_of_the_paper(written):
@@ -306,7 +318,7 @@ def test_every_point_of_the_piece_is_on_a_page(written):
 )
 def test_one_page_where_possible(drawing, upright, paper):
     low = Drawing(drawing.title, drawing.drawn, ())
-    (page,) = read(write_pdf(low, paper))
+    (page,) = printed(low, paper)
     assert (page.size[0] < page.size[1]) == upright
     offset_of(page, lines_of(low))
     points = np.concatenate([stroke.points for stroke in page.drawn])
@@ -317,20 +329,20 @@ def test_one_page_where_possible(drawing, upright, paper):
 
 def test_bulb_is_one_page_of_a4():
     drawing = build_sheet(bulb()).drawing
-    (page,) = read(write_pdf(drawing))
+    (page,) = printed(drawing)
     assert page.size[0] < page.size[1]
     offset_of(page, lines_of(drawing))
 
 
 def test_no_bar_rather_than_tiles():
     drawing = piece(199.5, 280.5)
-    (page,) = read(write_pdf(drawing))
+    (page,) = printed(drawing)
     offset_of(page, lines_of(drawing))
 
 
 def test_piece_of_250_by_130_has_a_page_of_its_own():
     drawing = sheet(250, 130, above=70)
-    first, second = read(write_pdf(drawing))
+    first, second = printed(drawing)
     assert first.size[0] > first.size[1]
     offset_of(first, lines_of(drawing, PIECE))
     outline = next(s.points for s in first.drawn if layer_of(s) == "CUT_OUTER")
@@ -338,29 +350,10 @@ def test_piece_of_250_by_130_has_a_page_of_its_own():
     assert {layer_of(stroke) for stroke in second.drawn} == {"NOTE", "REF"}
 
 
-def test_notes_close_up_where_the_piece_was():
-    drawing = sheet(250, 130, above=70)
-    _, page = read(write_pdf(drawing))
-    lines = lines_of(drawing, ("NOTE", "REF"))
-    assert len(page.drawn) == len(lines)
-    ((_, title),) = spoken(page.drawn, "Title", 5.0)
-    ((legend, _),) = spoken(page.drawn, "Legend", 2.5)
-    bar = next(s.points for s in page.drawn if layer_of(s) == "REF" and len(s.points) == 2)
-    assert legend[1] == pytest.approx(bar[0, 1] - 10, abs=NEAR)
-    assert 5 < title[1] - 5.0 - bar[0, 1] < 10
-
-
-def test_notes_beside_the_piece_stay_where_they_are():
-    plain = sheet(250, 130, above=70)
-    drawing = Drawing(plain.title, plain.drawn, (*plain.texts, Text("NOTE", "Here", 120, 65, 2.5)))
-    _, page = read(write_pdf(drawing))
-    offset_of(page, lines_of(drawing, ("NOTE", "REF")))
-
-
 @pytest.mark.parametrize("paper", PAPERS)
 def test_large_piece_is_tiled(paper):
     drawing = sheet(320, 400)
-    *tiles, notes = read(write_pdf(drawing, paper))
+    *tiles, notes = printed(drawing, paper)
     assert len(tiles) == 4
     for page, name in zip(tiles, ("A1", "A2", "B1", "B2"), strict=True):
         assert spoken(page.footer, f"tile {name} of 2 x 2")
@@ -381,7 +374,7 @@ def test_large_piece_is_tiled(paper):
 
 def test_neighbours_share_their_crosses():
     drawing = sheet(320, 400)
-    tiles = read(write_pdf(drawing))[:4]
+    tiles = printed(drawing)[:4]
     shared = []
     for page, window in zip(tiles, windows_of(tiles, drawing.drawn[0].points), strict=True):
         arms = [s for s in page.drawn if layer_of(s) == "REF"]
@@ -402,13 +395,13 @@ def test_neighbours_share_their_crosses():
     ("width", "height", "upright", "count"), [(380, 270, True, 2), (270, 380, False, 3)]
 )
 def test_paper_is_turned_for_fewer_tiles(width, height, upright, count):
-    pages = read(write_pdf(piece(width, height)))
+    pages = printed(piece(width, height))
     assert [page.size[0] < page.size[1] for page in pages] == [upright] * count
 
 
 def test_empty_tiles_are_left_out():
     drawing = Drawing("Frame", (rectangle("CUT_OUTER", 600, 800),), ())
-    pages = read(write_pdf(drawing))
+    pages = printed(drawing)
     names = [
         name for name in FRAME for page in pages if spoken(page.footer, f"tile {name} of 3 x 4")
     ]
@@ -418,7 +411,7 @@ def test_empty_tiles_are_left_out():
 
 def test_tiles_are_those_that_a_line_crosses():
     slant = Drawing("Slant", (polyline("CUT_OUTER", (0, 0), (600, 800)),), ())
-    pages = read(write_pdf(slant))
+    pages = printed(slant)
     windows = windows_of(pages, slant.drawn[0].points)
     at = np.linspace(0, 1, 2001)[:, None, None] * [600, 800]
     inside = ((at > windows[:, 0] - NEAR) & (at < windows[:, 1] + NEAR)).all(axis=2)
@@ -428,7 +421,7 @@ def test_tiles_are_those_that_a_line_crosses():
 
 def test_large_notes_are_tiled_too():
     texts = tuple(Text("NOTE", f"Note {k}", 40 * k, 260, 3.0) for k in range(9))
-    pages = read(write_pdf(piece(320, 200, texts=texts)))
+    pages = printed(piece(320, 200, texts=texts))
     tiled = [bool(spoken(page.footer, "tile")) for page in pages]
     assert tiled == [True] * 4
     names = [

@@ -27,7 +27,6 @@ NOTCH_MM = 9.0  # the start edge is broken near its end
 
 
 def ink_of(picture: Path) -> np.ndarray:
-    Image.MAX_IMAGE_PIXELS = None
     with Image.open(picture) as image:
         flat = Image.new("RGB", image.size, "white")
         flat.paste(image, mask=image.getchannel("A") if "A" in image.getbands() else None)
