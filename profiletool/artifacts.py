@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from profiletool.designfile import to_json
+from profiletool.errors import Unsure
 from profiletool.joints.kinematics import deform
 from profiletool.options import options_of
 from profiletool.pipeline import Result
 from profiletool.records import Design, FloatArray, Verification
+from profiletool.report.candidates import draw_candidates
 from profiletool.report.dossier import Dossier
 from profiletool.report.error import error_figure
 from profiletool.report.fe import theta_csv
@@ -70,6 +72,11 @@ def files_of(
             files |= mesh_files(checked.run)
     files["report.html"] = report_html(dossier_of(result, scene, files["template.svg"].decode()))
     return files
+
+
+def candidates_png(unsure: Unsure) -> bytes:
+    """Draw what the object could be, for a user who is asked to say."""
+    return draw_candidates(unsure.rgb, unsure.candidates)
 
 
 def dossier_of(result: Result, scene: Scene, template_svg: str) -> Dossier:
@@ -178,7 +185,9 @@ def scene_of(result: Result) -> Scene:
     layout = plan.layout
     backdrop = None
     if subject.picture is not None and subject.origin_px is not None:
-        backdrop = backdrop_of(subject.picture, subject.scale.mm_per_px, subject.origin_px)
+        backdrop = backdrop_of(
+            subject.picture, subject.scale.mm_per_px, subject.origin_px, subject.turn_deg
+        )
     radius = 0.5 * design.tube.outer_diameter_mm
     straight = deform((), layout.length_mm, radius, layout.pose, subject.profile.sign)
     return Scene(

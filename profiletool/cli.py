@@ -17,11 +17,21 @@ from profiletool.console import (
     Extrapolate,
     FormulaFile,
     Quiet,
+    degrees,
     exit_codes,
+    four,
     progress_bar,
     speaker,
+    two,
 )
-from profiletool.errors import Infeasible, NotVerified, UnreadableInput, UsageError
+from profiletool.errors import (
+    Infeasible,
+    NoObject,
+    NotVerified,
+    UnreadableInput,
+    Unsure,
+    UsageError,
+)
 
 app = typer.Typer(
     name="profiletool",
@@ -132,6 +142,30 @@ def design(
     marker_mm: Annotated[
         float | None, typer.Option(help="Side of an ArUco DICT_4X4_50 marker in the picture, mm.")
     ] = None,
+    camera_distance: Annotated[
+        float | None,
+        typer.Option(help="From the lens to the marker's or printed sheet's plane, mm: parallax."),
+    ] = None,
+    box: Annotated[
+        str | None, typer.Option(metavar="X,Y,W,H", help="The object lies in this box, px.")
+    ] = None,
+    point: Annotated[
+        str | None, typer.Option(metavar="X,Y", help="A point inside the object, px.")
+    ] = None,
+    mask: Annotated[
+        Path | None,
+        typer.Option(help="The object in white on black, a picture of the same size."),
+    ] = None,
+    rotate: Annotated[
+        str,
+        typer.Option(
+            metavar="auto|DEG",
+            help="Turn the object, deg counter-clockwise; auto: its axis upright.",
+        ),
+    ] = "0",
+    symmetric: Annotated[
+        bool, typer.Option("--symmetric", help="Take the mean of the object's two sides.")
+    ] = False,
     side: Annotated[
         Literal["left", "right"], typer.Option(help="Side of the object to follow.")
     ] = "left",
@@ -216,6 +250,7 @@ def design(
         from profiletool.image.scale import ScaleRequest
         from profiletool.records import Material
         from profiletool.report.text import joint_table
+        from profiletool.sight import Look
         from profiletool.template.kerf import check_kerf
         from profiletool.template.kinds import Wish
 
@@ -224,7 +259,14 @@ def design(
         known = pipeline.read_formula(formula, extrapolate)
         request = subject.Request(
             file=picture,
-            scale=ScaleRequest(height, width, mm_per_px, marker_mm),
+            scale=ScaleRequest(height, width, mm_per_px, marker_mm, camera_distance),
+            look=Look(
+                box=None if box is None else four("--box", box),
+                point=None if point is None else two("--point", point),
+                mask=mask,
+                rotate="auto" if rotate == "auto" else degrees("--rotate", rotate),
+                symmetric=symmetric,
+            ),
             side=side,
             start_pct=start,
             end_pct=end,
@@ -255,8 +297,13 @@ def design(
         except ValueError as error:
             raise UsageError(f"--kerf: {error}") from error
         say = speaker(quiet)
-        with progress_bar("finite elements", quiet) as progress:
-            result = pipeline.run(request, say, progress)
+        try:
+            with progress_bar("finite elements", quiet) as progress:
+                result = pipeline.run(request, say, progress)
+        except Unsure as unsure:
+            shown = Path(f"{out or picture.stem}_candidates.png")
+            output.write_file(shown, artifacts.candidates_png(unsure), force=True)
+            raise NoObject(f"{unsure}; {shown} shows what it could be") from unsure
         files = artifacts.files_of(result, Wish(kerf_mm=kerf, date=date), paper)
         output.write_folder(folder, files, force)
         text = files["design.json"].decode() if as_json else joint_table(result.design)
@@ -284,6 +331,7 @@ for _command, _example in (
     (cli_table.table, "profiletool table --openF 6,8,10 --csv"),
     (cli_table.assign, "profiletool assign --openF 8,8,8,8,6,10 --theta 30,30,30,25,20,45"),
     (cli_template.template, "profiletool template bulb_design/design.json --variant strip"),
+    (cli_template.sheet, "profiletool sheet --paper letter --out sheet.pdf"),
 ):
     app.command(epilog=f"Example:  {_example}")(_command)
 

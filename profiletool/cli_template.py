@@ -1,4 +1,4 @@
-"""The command that draws templates, and the options that it shares with `design`."""
+"""The commands that draw for printer and cutter, and the options they share with `design`."""
 
 from __future__ import annotations
 
@@ -60,3 +60,22 @@ def template(
         files["design.json"] = to_json(made).encode()
         output.write_folder(folder, files, force)
         speaker(quiet)(f"written: {folder}")
+
+
+def sheet(
+    paper: Paper = "a4",
+    out: Annotated[Path | None, typer.Option(help="File (default: sheet_ + paper + .pdf).")] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an earlier file.")] = False,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Print the calibration sheet: an object photographed on it needs no size given."""
+    with exit_codes(debug):
+        from profiletool import output
+        from profiletool.template.calibration import calibration_sheet
+
+        file = out or Path(f"sheet_{paper}.pdf")
+        output.write_file(file, calibration_sheet(paper), force)
+        say = speaker(quiet)
+        say("print at 100 %, measure both bars, lay the object in the field with its top up")
+        say(f"written: {file}")

@@ -114,3 +114,31 @@ def numbers(option: str, text: str) -> list[float]:
     if not all(abs(value) < 1e6 for value in values):
         raise UsageError(f"{option} takes finite numbers, not {text!r}")
     return values
+
+
+def two(option: str, text: str) -> tuple[float, float]:
+    """Read two numbers; as `numbers`."""
+    x, y = _so_many(option, text, 2)
+    return x, y
+
+
+def four(option: str, text: str) -> tuple[float, float, float, float]:
+    """Read four numbers; as `numbers`."""
+    x, y, width, height = _so_many(option, text, 4)
+    return x, y, width, height
+
+
+def degrees(option: str, text: str) -> float:
+    """Read an angle within one turn; as `numbers`."""
+    (angle,) = _so_many(option, text, 1)
+    if abs(angle) > 360.0:
+        raise UsageError(f"{option} takes at most 360 degrees, not {text}")
+    return angle
+
+
+def _so_many(option: str, text: str, count: int) -> list[float]:
+    values = numbers(option, text)
+    if len(values) != count:
+        many = "one number" if count == 1 else f"{count} numbers with commas between"
+        raise UsageError(f"{option} takes {many}, not {text!r}")
+    return values

@@ -54,11 +54,16 @@ class Unsure(NoObject):
     ----------
     candidates : tuple of (mask, confidence, method)
         The best first; masks are (H, W) bool of the picture's size, confidences 0 to 1.
+    rgb : (H, W, 3) uint8
+        The picture that they were found in.
     """
 
-    def __init__(self, message: str, candidates: tuple[Candidate, ...]) -> None:
+    def __init__(
+        self, message: str, candidates: tuple[Candidate, ...], rgb: NDArray[np.uint8]
+    ) -> None:
         super().__init__(message)
         self.candidates = candidates
+        self.rgb = rgb
 
 
 class Infeasible(ProfiletoolError):

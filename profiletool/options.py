@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import PurePath
 
 from profiletool.report.tables import Option
@@ -26,12 +27,18 @@ def options_of(request: Request) -> tuple[Option, ...]:
 
 
 def _values(request: Request) -> dict[str, str]:
-    scale, material = request.scale, request.material
+    scale, material, look = request.scale, request.material, request.look
     return {
         "--height": _mm(scale.height_mm),
         "--width": _mm(scale.width_mm),
         "--mm-per-px": "not given" if scale.mm_per_px is None else f"{scale.mm_per_px:g}",
         "--marker-mm": _mm(scale.marker_mm),
+        "--camera-distance": _mm(scale.camera_distance_mm),
+        "--box": _px(look.box),
+        "--point": _px(look.point),
+        "--mask": "not given" if look.mask is None else PurePath(look.mask).name,
+        "--rotate": look.rotate if look.rotate == "auto" else f"{look.rotate:g}°",
+        "--symmetric": _yes(look.symmetric),
         "--side": request.side,
         "--from": f"{request.start_pct:g} %",
         "--to": f"{request.end_pct:g} %",
@@ -60,6 +67,10 @@ def _values(request: Request) -> dict[str, str]:
 
 def _mm(length: float | None, absent: str = "not given") -> str:
     return absent if length is None else f"{length:g} mm"
+
+
+def _px(values: Sequence[float] | None) -> str:
+    return "not given" if values is None else ",".join(f"{value:g}" for value in values) + " px"
 
 
 def _yes(value: bool) -> str:

@@ -105,6 +105,11 @@ class Scale:
     source: Literal["height", "width", "mm-per-px", "marker", "sheet", "resolution", "vector"]
     error_share: float | None = None
 
+    @property
+    def measured_error(self) -> float | None:
+        """``error_share`` of a scale that the picture tells; None where the user answers for it."""
+        return self.error_share if self.source in ("marker", "sheet") else None
+
 
 @dataclass(frozen=True)
 class Profile:
@@ -199,7 +204,13 @@ class Joint:
 
 @dataclass(frozen=True)
 class Source:
-    """Where a design comes from; ``origin_px`` is the object frame's origin in the picture."""
+    """Where a design comes from.
+
+    ``origin_px`` is the object frame's origin in the picture (in the frontal view of a printed
+    sheet) once that is turned by ``turn_deg``, counter-clockwise about its middle.
+    ``scale_error_share`` is by how much of itself a scale that was measured in the picture may be
+    off, about two standard deviations; ``confidence`` how far the silhouette is to be believed.
+    """
 
     file: str
     sha256: str
@@ -209,6 +220,10 @@ class Source:
     profile_length_mm: float
     bridged_share: float
     origin_px: tuple[float, float] | None
+    turn_deg: float = 0.0
+    symmetric: bool = False
+    scale_error_share: float | None = None
+    confidence: float | None = None
 
 
 @dataclass(frozen=True)

@@ -50,8 +50,9 @@ def sensitivity_of(design: Design, run: Run, profile: Profile) -> tuple[Sensitiv
 
     thread = 2.0 * design.gauze.pitch_mm / design.tube.outer_diameter_mm
     wall = _WALL_SHARE * design.tube.wall_mm
+    scale = design.source.scale_error_share or _SCALE_SHARE
     # What lies off the start grows with the scale.
-    grown = _SCALE_SHARE * np.einsum("mk,mk->m", found.normal, points - points[0])
+    grown = scale * np.einsum("mk,mk->m", found.normal, points - points[0])
     return (
         _told(
             f"pressure {_PRESSURE_BAR:g} bar off", None, off(rates.pressure, _PRESSURE_BAR / _BAR)
@@ -60,7 +61,7 @@ def sensitivity_of(design: Design, run: Run, profile: Profile) -> tuple[Sensitiv
         *worst(f"cut {_OPENF_MM:g} mm longer or shorter", rates.openF, _OPENF_MM),
         *worst(f"joint {_PLACE_MM:g} mm off its place", rates.wrapped[:-1], _PLACE_MM),
         _told(f"wall {100.0 * _WALL_SHARE:g} % off", None, off(rates.wall, wall)),
-        _told(f"scale {100.0 * _SCALE_SHARE:g} % off", None, grown),
+        _told(f"scale {100.0 * scale:.2g} % off", None, grown),
     )
 
 

@@ -10,19 +10,22 @@ from typing import Literal
 import numpy as np
 
 from profiletool.errors import NoObject, UsageError
-from profiletool.image.load import load_picture
-from profiletool.image.marker import find_markers
-from profiletool.image.scale import ScaleRequest, scale_of
-from profiletool.image.silhouette import find_silhouette
+from profiletool.image.scale import ScaleRequest
 from profiletool.joints.assign import INTERFERENCE_MM
 from profiletool.profile.side import top_middle
 from profiletool.profile.target import Reach, profile_of_line, profile_of_object
+from profiletool.profile.upright import turned
 from profiletool.profile.vector import SUFFIXES, load_vector
 from profiletool.records import Material, Picture, Profile, Scale, Side, Silhouette
+from profiletool.sight import Look, averaged, see, turn_of
 
 Method = Literal["optimal", "paper"]
 
-_WRONG_SCALE = {"height": {"top", "bottom"}, "width": {"left", "right"}}
+_WRONG_SCALE = {
+    "height": {"top", "bottom"},
+    "width": {"left", "right"},
+    "sheet": {"left", "right", "top", "bottom"},
+}
 
 
 @dataclass(frozen=True)
@@ -34,6 +37,7 @@ class Request:
 
     file: Path
     scale: ScaleRequest = field(default_factory=ScaleRequest)
+    look: Look = field(default_factory=Look)
     side: Side = "left"
     start_pct: float = 0.0
     end_pct: float = 100.0
@@ -54,13 +58,19 @@ class Request:
 
 @dataclass(frozen=True)
 class Subject:
-    """The object that a design is for; picture, silhouette and origin only where there is one."""
+    """The object that a design is for; picture, silhouette and origin only where there is one.
+
+    ``origin_px`` is the object frame's origin once the picture is turned by ``turn_deg``, counter-
+    clockwise about its middle. ``notes`` say what the user should know of how it was seen.
+    """
 
     picture: Picture | None
     silhouette: Silhouette | None
     scale: Scale
     origin_px: tuple[float, float] | None
     profile: Profile
+    turn_deg: float = 0.0
+    notes: tuple[str, ...] = ()
 
 
 def find_subject(request: Request, say: Callable[[str], None]) -> Subject:
@@ -79,32 +89,40 @@ def find_subject(request: Request, say: Callable[[str], None]) -> Subject:
     )
     if request.file.suffix.lower() in SUFFIXES:
         return _drawn_subject(request, reach, say)
-    picture = load_picture(request.file)
-    markers = find_markers(picture) if request.scale.marker_mm is not None else []
-    silhouette = find_silhouette(picture, ignore=markers)
-    scale = scale_of(picture, silhouette, request.scale)
+    seen = see(request.file, request.scale, request.look, say)
+    silhouette, scale = seen.silhouette, seen.scale
     _check_frame(silhouette, scale, request.side)
     k = scale.mm_per_px
     origin = top_middle(silhouette.contour_px * [1.0, -1.0]) * [1.0, -1.0]
     outline = (silhouette.contour_px - origin) * [k, -k]
     width, height = np.ptp(outline, axis=0)
+    sure = f" (sure to {100.0 * silhouette.confidence:.0f} %)"
+    error = scale.measured_error
+    within = "" if error is None else f", within {100.0 * error:.2g} %"
     say(
-        f"object: {width:.1f} x {height:.1f} mm, found by {silhouette.method}, "
-        f"{k:.4g} mm per pixel from {scale.source}"
+        f"object: {width:.1f} x {height:.1f} mm, found by {silhouette.method}{sure}, "
+        f"{k:.4g} mm per pixel from {scale.source}{within}"
     )
     reach = replace(reach, noise_mm=silhouette.noise_px * k, spacing_mm=k)
     profile = profile_of_object(outline, reach)
-    return Subject(picture, silhouette, scale, (float(origin[0]), float(origin[1])), profile)
+    place = float(origin[0]), float(origin[1])
+    return Subject(seen.picture, silhouette, scale, place, profile, seen.turn_deg, seen.notes)
 
 
 def _drawn_subject(request: Request, reach: Reach, say: Callable[[str], None]) -> Subject:
     drawn = load_vector(request.file)
+    look, points = request.look, drawn.points
+    if not drawn.closed and (look.rotate == "auto" or look.symmetric):
+        raise UsageError("--rotate auto and --symmetric need an object; this is an open profile")
+    turn = turn_of(points, look.rotate)
+    points = turned(points, turn) if turn else points
+    points = averaged(points) if look.symmetric else points
     make = profile_of_object if drawn.closed else profile_of_line
-    profile = make(drawn.points, reach)
+    profile = make(points, reach)
     kind = "closed outline" if drawn.closed else "open profile"
     x, y = profile.points[0]
     say(f"drawing: {kind}, {profile.length_mm:.1f} mm to follow from ({x:.1f}, {y:.1f}) down")
-    return Subject(None, None, Scale(1.0, "vector"), None, profile)
+    return Subject(None, None, Scale(1.0, "vector"), None, profile, turn)
 
 
 def check_request(request: Request) -> None:
@@ -153,9 +171,10 @@ def drawing_notes(request: Request, subject: Subject) -> Iterator[str]:
     if subject.silhouette is None:
         if request.scale != ScaleRequest():
             yield "a drawing is in mm already: the scale options were not used"
+        if request.look != Look(rotate=request.look.rotate, symmetric=request.look.symmetric):
+            yield "a drawing needs no --box, --point or --mask: they were not used"
         return
-    if subject.silhouette.method == "grabcut":
-        yield "the silhouette is a guess on a busy ground: look at it in overlay.png"
+    yield from subject.notes
     if subject.silhouette.touches:
         edges = ", ".join(sorted(subject.silhouette.touches))
         yield f"the object runs out of the frame ({edges}); the profile ends there"

@@ -28,6 +28,7 @@ _LENS_SPREAD = (0.1, 0.1)  # of k1 and k2, before any corner is looked at
 _LEAST_NOISE_PX = 0.03  # what corners scatter at best
 _USUAL_NOISE_PX = 0.3
 _OUTLYING = 5.0
+_UNBENDS = 30  # rounds that read the distortion backwards; each gains a digit or more
 _LEAST_PER_VALUE = 4  # coordinates of corners for every value to be found
 _LOG_FOCAL, _LENS, _TURN, _PLACE = 0, slice(1, 3), slice(3, 6), slice(6, 9)
 
@@ -85,6 +86,17 @@ class View:
     def picture_of(self, points: FloatArray) -> FloatArray:
         """Project points of the sheet, (..., 2) mm, board frame, to the picture: (..., 2) px."""
         return _project(self.values, points, self.middle)
+
+    def sheet_of(self, px: FloatArray) -> FloatArray:
+        """Bring points (..., 2) px of the picture to the sheet: (..., 2) mm, board frame."""
+        bent = (px - self.middle) / math.exp(self.values[_LOG_FOCAL])
+        flat = bent
+        for _ in range(_UNBENDS):
+            flat = bent / _stretch(self.values, flat)
+        plane = np.column_stack([_rotation(self.values)[:, :2], _shift(self.values)])
+        rays = np.concatenate([flat, np.ones_like(flat[..., :1])], axis=-1)
+        spots = rays @ np.linalg.inv(plane).T
+        return np.asarray(spots[..., :2] / spots[..., 2:])
 
     def size_share(self, points: FloatArray) -> float:
         """Give the relative standard deviation of a length among ``points`` (N, 2) mm on the sheet.
@@ -241,10 +253,15 @@ def _camera(values: FloatArray) -> FloatArray:
 def _project(values: FloatArray, points: FloatArray, middle: FloatArray) -> FloatArray:
     seen = points @ _rotation(values)[:, :2].T + _shift(values)
     flat = seen[..., :2] / seen[..., 2:]
+    bent = flat * _stretch(values, flat)
+    return np.asarray(math.exp(values[_LOG_FOCAL]) * bent + middle)
+
+
+def _stretch(values: FloatArray, flat: FloatArray) -> FloatArray:
+    """By how much the lens moves points (..., 2) off its axis, (..., 1)."""
     k1, k2 = values[_LENS]
     square = (flat**2).sum(axis=-1, keepdims=True)
-    stretch = 1.0 + square * (k1 + square * k2)
-    return np.asarray(math.exp(values[_LOG_FOCAL]) * flat * stretch + middle)
+    return np.asarray(1.0 + square * (k1 + square * k2))
 
 
 def _gradient(function: Callable[[FloatArray], float], values: FloatArray) -> FloatArray:

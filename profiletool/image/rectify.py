@@ -22,6 +22,38 @@ _SURE_SHARE = 0.15
 
 
 @dataclass(frozen=True)
+class Frame:
+    """A frontal picture's place on the board: its middle, and where right and down point."""
+
+    middle: FloatArray
+    right: FloatArray
+    down: FloatArray
+    mm_per_px: float
+    width: int
+    height: int
+
+    def board_mm(self, px: FloatArray) -> FloatArray:
+        """Points (..., 2) px of the picture on the board, mm."""
+        off = (px - self._middle_px) * self.mm_per_px
+        return np.asarray(self.middle + off[..., :1] * self.right + off[..., 1:] * self.down)
+
+    def px(self, mm: FloatArray) -> FloatArray:
+        """Points (..., 2) mm of the board in the picture, px."""
+        off = (mm - self.middle) / self.mm_per_px
+        return np.stack([off @ self.right, off @ self.down], axis=-1) + self._middle_px
+
+    @property
+    def turn(self) -> int:
+        """Quarter turns, counter-clockwise, that bring the picture as the sheet was printed."""
+        turns = {(0, 1): 0, (1, 0): 1, (0, -1): 2, (-1, 0): 3}
+        return turns[(int(self.down[0]), int(self.down[1]))]
+
+    @property
+    def _middle_px(self) -> FloatArray:
+        return (np.array([self.width, self.height], float) - 1.0) / 2.0
+
+
+@dataclass(frozen=True)
 class Rectified:
     """A frontal view of the sheet.
 
@@ -54,6 +86,10 @@ class Rectified:
         Standard deviation of the scale in the sheet's plane, relative: the print's, the
         corners' and the lens's together.
     warnings : tuple of str
+    frame : Frame
+        Where the frontal picture lies on the board.
+    view : View
+        The photograph's.
     """
 
     picture: Picture
@@ -70,38 +106,30 @@ class Rectified:
     corners_total: int
     error_share: float
     warnings: tuple[str, ...]
+    frame: Frame
+    view: View
 
+    def photo_of(self, px: FloatArray) -> FloatArray:
+        """Bring points (..., 2) px of the frontal picture to the photograph."""
+        return self.view.picture_of(self.frame.board_mm(px))
 
-@dataclass(frozen=True)
-class _Frame:
-    """A frontal picture's place on the board: its middle, and where right and down point."""
+    def frontal_of(self, px: FloatArray) -> FloatArray:
+        """Bring points (..., 2) px of the photograph to the frontal picture."""
+        return self.frame.px(self.view.sheet_of(px))
 
-    middle: FloatArray
-    right: FloatArray
-    down: FloatArray
-    mm_per_px: float
-    width: int
-    height: int
+    def mask_of(self, mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Bring a mask of the photograph to the frontal picture."""
+        return _warped(mask.view(np.uint8) * 255, self.view, self.frame) > 127
 
-    def board_mm(self, px: FloatArray) -> FloatArray:
-        """Points (..., 2) px of the picture on the board, mm."""
-        off = (px - self._middle_px) * self.mm_per_px
-        return np.asarray(self.middle + off[..., :1] * self.right + off[..., 1:] * self.down)
-
-    def px(self, mm: FloatArray) -> FloatArray:
-        """Points (..., 2) mm of the board in the picture, px."""
-        off = (mm - self.middle) / self.mm_per_px
-        return np.stack([off @ self.right, off @ self.down], axis=-1) + self._middle_px
-
-    @property
-    def turn(self) -> int:
-        """Quarter turns, counter-clockwise, that bring the picture as the sheet was printed."""
-        turns = {(0, 1): 0, (1, 0): 1, (0, -1): 2, (-1, 0): 3}
-        return turns[(int(self.down[0]), int(self.down[1]))]
-
-    @property
-    def _middle_px(self) -> FloatArray:
-        return (np.array([self.width, self.height], float) - 1.0) / 2.0
+    def photo_mask_of(self, mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Bring a mask of the frontal picture to the photograph."""
+        outlines, _ = cv2.findContours(
+            mask.view(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE
+        )
+        made = np.zeros((2.0 * self.view.middle[::-1] + 1.0).round().astype(int), np.uint8)
+        there = [self.photo_of(line[:, 0].astype(float)) for line in outlines]
+        cv2.fillPoly(made, [np.round(line).astype(np.int32) for line in there], 1)
+        return made.view(bool)
 
 
 def rectify(picture: Picture) -> Rectified | None:
@@ -151,6 +179,8 @@ def rectify(picture: Picture) -> Rectified | None:
         corners_total=corners_of(seen.board),
         error_share=math.hypot(PRINT_SHARE, fit_share),
         warnings=(),
+        frame=frame,
+        view=view,
     )
     return replace(made, warnings=_warnings(made, seen.board, view, (width, height), seen.others))
 
@@ -166,7 +196,7 @@ def _corner_points(board: Board) -> FloatArray:
     return np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]) * board.size_mm
 
 
-def _frame_for(board: Board, view: View) -> _Frame:
+def _frame_for(board: Board, view: View) -> Frame:
     """Choose the frontal picture: as fine as the photograph's finest place, up where it was."""
     middle = np.array(board.size_mm) / 2.0
     axes = np.array([[1.0, 0.0], [0.0, 1.0]])
@@ -182,10 +212,10 @@ def _frame_for(board: Board, view: View) -> _Frame:
     px_per_mm = float(np.linalg.svd(np.stack(moved, axis=-1), compute_uv=False).max())
     px_per_mm = min(px_per_mm, math.sqrt(MAX_PIXELS / (across * along)))
     size = math.ceil(across * px_per_mm), math.ceil(along * px_per_mm)
-    return _Frame(middle, right, down, 1.0 / px_per_mm, *size)
+    return Frame(middle, right, down, 1.0 / px_per_mm, *size)
 
 
-def _warped(image: NDArray[np.uint8], view: View, frame: _Frame) -> NDArray[np.uint8]:
+def _warped(image: NDArray[np.uint8], view: View, frame: Frame) -> NDArray[np.uint8]:
     made = np.empty((frame.height, frame.width, *image.shape[2:]), np.uint8)
     columns = np.arange(frame.width, dtype=float)
     no_second_map = np.empty(0, np.float32)

@@ -90,7 +90,8 @@ def scale_of(picture: Picture, silhouette: Silhouette, request: ScaleRequest) ->
     if picture.mm_per_px is not None:
         return Scale(picture.mm_per_px, "resolution", _SCANNER_SHARE)
     raise NoScale(
-        "nothing says how large the object is; give --height, --width, --mm-per-px or --marker-mm"
+        "nothing says how large the object is; give --height, --width, --mm-per-px or --marker-mm, "
+        "or photograph it on a printed profiletool sheet"
     )
 
 

@@ -73,7 +73,7 @@ def find_silhouette(
         )
     except Unsure as unsure:
         whole = [(_pasted(mask, window, shape), c, how) for mask, c, how in unsure.candidates]
-        raise Unsure(str(unsure), tuple(whole)) from None
+        raise Unsure(str(unsure), tuple(whole), picture.rgb) from None
     mask = _pasted(found.mask, window, shape)
     touches = found.touches & edges_touched(mask)
     return replace(found, contour_px=found.contour_px + corner, mask=mask, touches=touches)
@@ -173,7 +173,7 @@ def _searched(
     found = ranked(find_candidates(view), pointed=point is not None)
     best = found[0]
     if best.confidence < BELIEVED:
-        raise _unsure(found, rgb.shape[:2])
+        raise _unsure(found, rgb)
     if point is None:
         refuse_another(best, found)
     field = edge_field(fine, best.mask, small)
@@ -182,13 +182,14 @@ def _searched(
     return _Found(field, best.method, best.confidence)
 
 
-def _unsure(found: list[Candidate], shape: tuple[int, ...]) -> Unsure:
-    shown = tuple((_resized(c.mask, shape), c.confidence, c.method) for c in found[:_SHOWN])
+def _unsure(found: list[Candidate], rgb: NDArray[np.uint8]) -> Unsure:
+    shown = tuple((_resized(c.mask, rgb.shape[:2]), c.confidence, c.method) for c in found[:_SHOWN])
     return Unsure(
         f"the object cannot be told from the ground for certain ({100 * shown[0][1]:.0f} %); say "
         "where it is with --box, --point or --mask, or photograph it on a plain ground of "
         "another colour",
         shown,
+        rgb,
     )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from contourpy import contour_generator
 from numpy.typing import NDArray
 
-from profiletool.records import FloatArray, Picture
+from profiletool.records import FloatArray
 from profiletool.report.figure import panels, png, titled
 from profiletool.report.palette import INK, RED
 
@@ -20,12 +20,13 @@ _LONGEST_PX = 480  # side of a panel's picture; more would not be seen
 Candidates = Sequence[tuple[NDArray[np.bool_], float, str]]
 
 
-def draw_candidates(picture: Picture, candidates: Candidates) -> bytes:
+def draw_candidates(rgb: NDArray[np.uint8], candidates: Candidates) -> bytes:
     """Draw a picture with up to four candidates, each outlined in a panel of its own.
 
     Parameters
     ----------
-    picture : Picture
+    rgb : (H, W, 3) uint8
+        The picture.
     candidates : sequence of (mask, confidence, method)
         At least one, the best first; masks are (H, W) bool, confidences 0 to 1.
 
@@ -35,17 +36,17 @@ def draw_candidates(picture: Picture, candidates: Candidates) -> bytes:
         PNG. The axes are numbered in the picture's pixels, for --box and --point.
     """
     shown = candidates[:_MOST]
-    height, width = picture.rgb.shape[:2]
+    height, width = rgb.shape[:2]
     tall = min(max(_PANEL_IN * height / width, 1.5), 8.0) + 0.6
     figure, axes = panels(len(shown), _PANEL_IN * len(shown), tall)
     for number, (panel, candidate) in enumerate(zip(axes, shown, strict=True), start=1):
-        _draw(panel, picture, *candidate, number)
+        _draw(panel, rgb, *candidate, number)
     return png(figure)
 
 
 def _draw(
     panel: Any,
-    picture: Picture,
+    rgb: NDArray[np.uint8],
     mask: NDArray[np.bool_],
     confidence: float,
     method: str,
@@ -55,7 +56,7 @@ def _draw(
     step = max(1, -(-max(height, width) // _LONGEST_PX))
     extent = (-0.5, width - 0.5, height - 0.5, -0.5)
     panel.grid(visible=False)
-    panel.imshow(picture.rgb[::step, ::step], extent=extent, interpolation="nearest")
+    panel.imshow(rgb[::step, ::step], extent=extent, interpolation="nearest")
     for line in _outlines(mask[::step, ::step]):
         x, y = line.T * step
         # Light beneath dark, to be seen on any picture.

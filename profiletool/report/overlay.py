@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
+from PIL import Image
 
 from profiletool.joints.kinematics import Bend
 from profiletool.profile.offset import offset_curve, offset_points
@@ -59,20 +60,31 @@ class Scene:
     missed: Sequence[tuple[float, float]] = ()
 
 
-def backdrop_of(picture: Picture, mm_per_px: float, origin_px: tuple[float, float]) -> Backdrop:
+def backdrop_of(
+    picture: Picture, mm_per_px: float, origin_px: tuple[float, float], turn_deg: float = 0.0
+) -> Backdrop:
     """Place a picture in the object frame, thinned to what the figure resolves.
 
-    What is transparent is shown white.
+    It is turned counter-clockwise about its middle first; ``origin_px`` lies in what comes of
+    that. What is transparent, or outside the picture, is shown white.
     """
     height, width = picture.rgb.shape[:2]
     every = max(1, round(max(height, width) / _LONGEST_PX))
-    x, y = origin_px
-    extent = np.array([-0.5 - x, width - 0.5 - x, y - height + 0.5, y + 0.5]) * mm_per_px
-    left, right, bottom, top = extent.tolist()
     rgb = picture.rgb[::every, ::every]
     if picture.alpha is not None:
         cover = picture.alpha[::every, ::every, None] / 255.0
         rgb = np.rint(255.0 - (255.0 - rgb) * cover).astype(np.uint8)
+    size = np.array([width, height], float)
+    if turn_deg:
+        pixel = size / rgb.shape[1::-1]
+        image = Image.fromarray(rgb).rotate(
+            turn_deg, Image.Resampling.BICUBIC, expand=True, fillcolor="white"
+        )
+        rgb, size = np.asarray(image), pixel * image.size
+    x, y = 0.5 * (width - 1.0) - origin_px[0], origin_px[1] - 0.5 * (height - 1.0)
+    half, tall = 0.5 * size
+    extent = np.array([x - half, x + half, y - tall, y + tall]) * mm_per_px
+    left, right, bottom, top = extent.tolist()
     return Backdrop(rgb, (left, right, bottom, top))
 
 

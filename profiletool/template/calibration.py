@@ -10,8 +10,8 @@ from reportlab.pdfgen.pathobject import PDFPathObject
 
 from profiletool.image.board import Board, Paper, board_for, ink
 from profiletool.records import FloatArray
-from profiletool.template.drawing import Text
-from profiletool.template.pdf import BAR_MM, PT_PER_MM
+from profiletool.template.drawing import RULER_MM, Text
+from profiletool.template.pdf import PT_PER_MM
 
 _DECIMALS = 4  # of the coordinates, mm
 _PEN_MM = 0.2
@@ -79,12 +79,12 @@ def _rule(canvas: Canvas, board: Board) -> None:
         (np.array([left, y]), np.array([1.0, 0.0]), np.array([0.0, -1.0])),
         (np.array([x, below]), np.array([0.0, 1.0]), np.array([-1.0, 0.0])),
     ):
-        _line(path, np.array([start, start + BAR_MM * along]))
+        _line(path, np.array([start, start + RULER_MM * along]))
         for k in range(11):
-            foot = start + k * BAR_MM / 10.0 * along
+            foot = start + k * RULER_MM / 10.0 * along
             length = _TICK_MM if k % 5 == 0 else _TICK_MM / 2.0
             _line(path, np.array([foot, foot + length * out]))
-    after = left + BAR_MM + 2.0 * _LETTER_MM
+    after = left + RULER_MM + 2.0 * _LETTER_MM
     lower, upper = y - _TICK_MM, board.paper_mm[1] - below + _BAR_MM - _LETTER_MM
     for text in (
         Text("NOTE", "print at 100 %, measure both bars: 100 mm", after, lower, _LETTER_MM),
