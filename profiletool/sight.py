@@ -25,7 +25,7 @@ from profiletool.records import FloatArray, Picture, Scale, Silhouette
 _MEAN_STEPS = 600  # of an outline's longer side, in which its two sides are averaged
 _LEANING_DEG, _LEANING_SHARE = 3.0, 0.5  # a lean that is told, and what upright then gains
 _INEXACT = 0.02  # of a scale: an error that is told
-_UNDOUBTED = 0.9  # a confidence that needs no word
+_UNDOUBTED = 0.8  # a confidence that needs no word
 _OUTWARD = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "top": (0.0, 1.0), "bottom": (0.0, -1.0)}
 _FACES = np.cos(np.radians(67.5))  # of a frame's edge once turned: what still counts as a side
 
@@ -264,16 +264,17 @@ def _symmetric(silhouette: Silhouette) -> Silhouette:
 
 
 def _notes(silhouette: Silhouette, scale: Scale, look: Look) -> Iterator[str]:
-    if silhouette.confidence < _UNDOUBTED:
+    if look.mask is None and silhouette.confidence < _UNDOUBTED:
         yield (
             f"the silhouette is sure to {100.0 * silhouette.confidence:.0f} % only: look at it in "
             "overlay.png; --box, --point or --mask say where the object is"
         )
     error = scale.measured_error
     if error is not None and error > _INEXACT:
+        surer = "from farther off" if scale.source == "sheet" else "with --camera-distance"
         yield (
-            f"the scale from the {scale.source} may be {100.0 * error:.1f} % off: "
-            "--camera-distance narrows it, --height or --width settle it"
+            f"the scale from the {scale.source} may be {100.0 * error:.1f} % off: it is surer "
+            f"{surer}, and --height or --width settle it"
         )
     if look.rotate == 0.0:
         yield from _lean(silhouette)

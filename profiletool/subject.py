@@ -96,7 +96,8 @@ def find_subject(request: Request, say: Callable[[str], None]) -> Subject:
     origin = top_middle(silhouette.contour_px * [1.0, -1.0]) * [1.0, -1.0]
     outline = (silhouette.contour_px - origin) * [k, -k]
     width, height = np.ptp(outline, axis=0)
-    sure = f" (sure to {100.0 * silhouette.confidence:.0f} %)"
+    given = request.look.mask is not None
+    sure = "" if given else f" (sure to {100.0 * silhouette.confidence:.0f} %)"
     error = scale.measured_error
     within = "" if error is None else f", within {100.0 * error:.2g} %"
     say(

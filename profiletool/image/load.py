@@ -10,6 +10,7 @@ import zlib
 from pathlib import Path
 from typing import NoReturn
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
@@ -20,9 +21,8 @@ from profiletool.reading import check_file
 from profiletool.records import MM_PER_INCH, Picture
 
 MAX_PIXELS = 64_000_000
-MAX_PIXELS_OF = {"WEBP": 40_000_000}  # decoded in several copies: they shall fit in a gibibyte
+MAX_PIXELS_OF = {"WEBP": 36_000_000}  # decoded in several copies: they shall fit in a gibibyte
 MAX_BYTES = 50_000_000
-_LUMA = np.array([299, 587, 114])  # thousandths
 MIN_SIDE_PX = 16
 FORMATS = ("PNG", "JPEG", "TIFF", "BMP", "WEBP")  # JPEG takes in multi-picture MPO
 _ASK_FOR = "save it as PNG, JPEG, TIFF, BMP or WebP"
@@ -57,7 +57,7 @@ def load_picture(path: Path) -> Picture:
     Parameters
     ----------
     path : Path
-        A PNG, JPEG, TIFF, BMP or WebP file of at most 50 MB and 64 megapixels (WebP: 40).
+        A PNG, JPEG, TIFF, BMP or WebP file of at most 50 MB and 64 megapixels (WebP: 36).
 
     Returns
     -------
@@ -128,7 +128,8 @@ def load_mask(path: Path, shape: tuple[int, int]) -> NDArray[np.bool_]:
             f"{path}: the mask is {width} x {height} pixels and the picture {shape[1]} x "
             f"{shape[0]}; save the mask at the picture's size"
         )
-    shade = picture.rgb @ _LUMA // 1000 if picture.alpha is None else picture.alpha
+    grey = cv2.COLOR_RGB2GRAY
+    shade = cv2.cvtColor(picture.rgb, grey) if picture.alpha is None else picture.alpha
     mask = np.asarray(shade >= 128)
     if not mask.any():
         raise UsageError(f"{path}: the mask is empty; paint the object white on black")

@@ -4,10 +4,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from profiletool.profile.symmetry import LARGEST_MISMATCH, symmetry_of
+from profiletool.profile.symmetry import LARGEST_MISMATCH, mirrored_mean, symmetry_of
 from profiletool.subject import Request, find_subject
 
 SAMPLES = Path(__file__).parents[2] / "samples"
@@ -78,3 +79,34 @@ def test_mirroring_mirrors_the_axis(lobe: float, turn: float) -> None:
 def test_an_outline_without_area_has_no_axis() -> None:
     with pytest.raises(ValueError, match="no axis"):
         symmetry_of(np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]))
+
+
+def test_mean_of_unequal_sides_lies_half_way() -> None:
+    """A box whose right side is 2 mm farther from the axis than its left one."""
+    box = np.array([[-10.0, 0.0], [12.0, 0.0], [12.0, 40.0], [-10.0, 40.0]])
+    mean = mirrored_mean(box, 0.0, 0.25)
+    middle = mean[(mean[:, 1] > 5.0) & (mean[:, 1] < 35.0)]
+    np.testing.assert_allclose(np.abs(middle[:, 0]), 11.0, atol=0.02)
+    assert mean[:, 1].min() == pytest.approx(0.0, abs=0.02)
+    assert mean[:, 1].max() == pytest.approx(40.0, abs=0.02)
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_mean_is_symmetric_and_runs_counter_clockwise(direction: int) -> None:
+    bump = 2.0 * np.exp(-(((T - 0.3) / 0.2) ** 2))
+    outline = (EGG + np.column_stack([bump, 0.0 * T]) + np.array([50.0, -7.0]))[::direction]
+    mean = mirrored_mean(outline, 50.0, 0.3)
+    there = np.column_stack([100.0 - mean[:, 0], mean[:, 1]])
+    order, other = np.lexsort(mean.T.round(6)), np.lexsort(there.T.round(6))
+    np.testing.assert_allclose(mean[order], there[other], atol=1e-5)
+    assert shapely.LinearRing(mean).is_ccw
+    # The bump goes in half on both sides.
+    for side in (1.0, -1.0):
+        x, y = EGG[np.argmin(np.abs(T - 0.3))]
+        off = shapely.LinearRing(mean).distance(shapely.Point(50.0 + side * (x + 1.0), y - 7.0))
+        assert off < 0.1
+
+
+def test_mean_of_a_mirror_image_is_itself() -> None:
+    mean = mirrored_mean(EGG, 0.0, 0.2)
+    assert shapely.LinearRing(mean).hausdorff_distance(shapely.LinearRing(EGG)) < 0.03

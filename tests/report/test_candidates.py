@@ -7,7 +7,6 @@ import io
 import numpy as np
 from PIL import Image
 
-from profiletool.records import Picture
 from profiletool.report.candidates import draw_candidates
 
 Y, X = np.mgrid[:240, :320]
@@ -17,9 +16,7 @@ RED = np.array([0xD5, 0x5E, 0x00])
 
 def drawn(*masks: np.ndarray, picture: np.ndarray | None = None) -> np.ndarray:
     rgb = np.full((*masks[0].shape, 3), 90, np.uint8) if picture is None else picture
-    made = draw_candidates(
-        Picture(rgb, None, None, "PNG"), [(mask, 0.4, "barriers") for mask in masks]
-    )
+    made = draw_candidates(rgb, [(mask, 0.4, "barriers") for mask in masks])
     return np.asarray(Image.open(io.BytesIO(made)).convert("RGB"))
 
 
@@ -54,6 +51,6 @@ def test_masks_of_the_whole_picture_and_large_ones() -> None:
 
 
 def test_the_same_bytes_again() -> None:
-    picture = Picture(np.full((240, 320, 3), 90, np.uint8), None, None, "PNG")
+    rgb = np.full((240, 320, 3), 90, np.uint8)
     found = [(DISC, 0.312, "a_method $with signs$")]
-    assert draw_candidates(picture, found) == draw_candidates(picture, found)
+    assert draw_candidates(rgb, found) == draw_candidates(rgb, found)

@@ -1,0 +1,328 @@
+"""From a picture's file to the object in it: hints, the printed sheet, upright and symmetric."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from PIL import Image
+
+from profiletool import sight
+from profiletool.errors import NoObject, Unsure, UsageError
+from profiletool.image.board import BOARDS
+from profiletool.image.rectify import Rectified, rectify
+from profiletool.image.scale import ScaleRequest
+from profiletool.profile.symmetry import symmetry_of
+from profiletool.profile.upright import turned
+from profiletool.records import FloatArray, Picture, Silhouette
+from profiletool.report.overlay import backdrop_of
+from profiletool.sight import Look, Seen, see
+from profiletool.subject import Request, find_subject
+from tests.image.views import Shot, bulb, photograph
+
+T = np.linspace(0.0, 2.0 * np.pi, 1201)[:-1]
+# Narrow above, heavy below: 80 wide and 120 high, y up.
+PEAR = np.column_stack([40.0 * np.cos(T) * (1.0 - 0.35 * np.sin(T)), 60.0 * np.sin(T)])
+PEAR_WIDTH, PEAR_HEIGHT = np.ptp(PEAR, axis=0).tolist()
+HEIGHT = ScaleRequest(height_mm=PEAR_HEIGHT)
+SHOT = Shot(600, 8, 30, k1=-0.08, size=(720, 960))
+
+
+def drawn(
+    path: Path,
+    outlines: list[FloatArray],
+    size: tuple[int, int] = (480, 400),
+    k: float = 2.0,
+) -> Path:
+    """Fill outlines, mm, y up, off the middle of a picture of (width, height)."""
+    fine = 4
+    width, height = (fine * side for side in size)
+    image = np.full((height, width, 3), 236, np.uint8)
+    for outline in outlines:
+        px = (outline * [k * fine, -k * fine] + [width / 2.0, height / 2.0]).round().astype(int)
+        cv2.fillPoly(image, [px.astype(np.int32)], (60, 90, 50))
+    Image.fromarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA)).save(path)
+    return path
+
+
+def look_at(file: Path, asked: ScaleRequest = HEIGHT, **look: object) -> Seen:
+    return see(file, asked, Look(**look), lambda line: None)  # type: ignore[arg-type]
+
+
+def size_of(seen: Seen) -> tuple[float, float]:
+    width, height = np.ptp(seen.silhouette.contour_px, axis=0) * seen.scale.mm_per_px
+    return float(width), float(height)
+
+
+# --- upright --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("lean", [-38.0, 14.0, 90.0])
+def test_turned_upright_it_has_its_own_width(tmp_path: Path, lean: float) -> None:
+    seen = look_at(drawn(tmp_path / "a.png", [turned(PEAR, lean)]), rotate="auto")
+    assert seen.turn_deg == pytest.approx(-lean, abs=0.2)
+    assert size_of(seen)[0] == pytest.approx(PEAR_WIDTH, rel=0.01)
+    assert seen.notes == ()
+
+
+def test_degrees_turn_counter_clockwise(tmp_path: Path) -> None:
+    """A pear whose narrow end points right comes to point up by a quarter turn."""
+    seen = look_at(drawn(tmp_path / "a.png", [turned(PEAR, -90.0)]), rotate=90.0)
+    x, y = seen.silhouette.contour_px.T
+    assert x[np.argmin(x)] < x.mean()
+    assert y[np.argmax(x)] > 0.5 * (y.min() + y.max())  # the widest place is below the middle
+
+
+def test_a_lean_is_told_and_left(tmp_path: Path) -> None:
+    seen = look_at(drawn(tmp_path / "a.png", [turned(PEAR, 20.0)]))
+    assert seen.turn_deg == 0.0
+    assert [note for note in seen.notes if "stands 20 deg off upright" in note]
+    upright = look_at(drawn(tmp_path / "b.png", [PEAR]))
+    assert upright.notes == ()
+
+
+def test_an_object_without_axis_is_not_turned(tmp_path: Path) -> None:
+    wedge = np.array([[-50.0, -30.0], [60.0, -40.0], [-20.0, 55.0]])
+    file = drawn(tmp_path / "a.png", [wedge])
+    with pytest.raises(NoObject, match="--rotate DEG"):
+        look_at(file, rotate="auto")
+    assert look_at(file, rotate=10.0).turn_deg == 10.0
+
+
+@pytest.mark.parametrize(
+    ("shift", "turn", "touches"),
+    [
+        ((-90.0, 0.0), 90.0, {"bottom"}),
+        ((-90.0, 0.0), -90.0, {"top"}),
+        ((0.0, 70.0), 180.0, {"bottom"}),
+        ((-90.0, 0.0), 45.0, {"left", "bottom"}),
+        ((-90.0, 0.0), 10.0, {"left"}),
+    ],
+)
+def test_edges_turn_with_the_object(
+    tmp_path: Path, shift: tuple[float, float], turn: float, touches: set[str]
+) -> None:
+    seen = look_at(drawn(tmp_path / "a.png", [PEAR + shift]), rotate=turn)
+    assert seen.silhouette.touches == touches
+
+
+@pytest.mark.parametrize("turn", [90.0, 30.0, -140.0])
+def test_the_overlay_turns_its_picture_with_the_outline(turn: float) -> None:
+    """A red dot on grey, found again where the turn brings it."""
+    rgb = np.full((200, 320, 3), 128, np.uint8)
+    dot = np.array([250.0, 40.0])
+    cv2.circle(rgb, (250, 40), 4, (255, 0, 0), -1)
+    middle = np.array([159.5, 99.5])
+    origin = np.array([150.0, 20.0])
+    back = backdrop_of(Picture(rgb, None, None, "PNG"), 0.5, (150.0, 20.0), turn)
+    red = (back.rgb[..., 0] > 200) & (back.rgb[..., 1] < 80)
+    rows, columns = np.nonzero(red)
+    left, right, bottom, top = back.extent
+    height, width = red.shape
+    x = left + (columns.mean() + 0.5) * (right - left) / width
+    y = top - (rows.mean() + 0.5) * (top - bottom) / height
+    there = turned((dot - middle) * [1.0, -1.0], turn) * [1.0, -1.0] + middle
+    np.testing.assert_allclose([x, y], (there - origin) * [0.5, -0.5], atol=0.3)
+
+
+# --- symmetric ------------------------------------------------------------------------------
+
+
+def test_the_mean_of_both_sides_is_taken(tmp_path: Path) -> None:
+    """The right side is 4 % farther out: both sides come to lie 2 % out."""
+    lopsided = np.where(PEAR[:, :1] > 0.0, PEAR * [1.04, 1.0], PEAR)
+    file = drawn(tmp_path / "a.png", [lopsided], size=(800, 600), k=4.0)
+    plain, mean = look_at(file), look_at(file, symmetric=True)
+    assert size_of(mean)[0] == pytest.approx(size_of(plain)[0], rel=0.003)
+    here, there = (symmetry_of(one.silhouette.contour_px).mismatch for one in (plain, mean))
+    assert there < 1e-3
+    assert here > 10.0 * there
+
+
+def test_unlike_sides_are_not_averaged(tmp_path: Path) -> None:
+    mug = np.array(
+        [[-40, -50], [40, -50], [40, -30], [70, -30], [70, 30], [40, 30], [40, 50], [-40, 50]],
+        dtype=float,
+    )
+    with pytest.raises(NoObject, match="two sides differ"):
+        look_at(drawn(tmp_path / "a.png", [mug]), symmetric=True)
+
+
+def test_a_side_out_of_the_frame_is_not_averaged(tmp_path: Path) -> None:
+    with pytest.raises(NoObject, match="no two sides"):
+        look_at(drawn(tmp_path / "a.png", [PEAR + np.array([90.0, 0.0])]), symmetric=True)
+
+
+# --- hints ----------------------------------------------------------------------------------
+
+TWO = [0.6 * PEAR + np.array([-55.0, 0.0]), 0.6 * PEAR + np.array([55.0, 0.0])]
+
+
+def test_of_two_objects_alike_a_hint_takes_one(tmp_path: Path) -> None:
+    file = drawn(tmp_path / "a.png", TWO)
+    with pytest.raises(NoObject):
+        look_at(file)
+    mask = np.zeros((400, 480), np.uint8)
+    mask[100:300, 280:420] = 255
+    Image.fromarray(mask).save(tmp_path / "mask.png")
+    for look in ({"point": (350.0, 200.0)}, {"box": (270.0, 80.0, 170.0, 240.0)}):
+        assert look_at(file, **look).silhouette.contour_px[:, 0].min() > 280.0
+    seen = look_at(file, mask=tmp_path / "mask.png")
+    np.testing.assert_allclose(np.ptp(seen.silhouette.contour_px, axis=0), [140, 200], atol=2.0)
+    assert seen.silhouette.method == "mask"
+
+
+def test_hints_that_do_not_fit_are_refused(tmp_path: Path) -> None:
+    file = drawn(tmp_path / "a.png", [PEAR])
+    with pytest.raises(UsageError, match="--point"):
+        look_at(file, point=(480.0, 10.0))
+    with pytest.raises(UsageError, match="--box"):
+        look_at(file, box=(400.0, 10.0, 100.0, 100.0))
+
+
+# --- the printed sheet ----------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def lying() -> Picture:
+    """A bulb that lies across the sheet."""
+    return photograph(BOARDS[0], bulb(), SHOT, np.random.default_rng(3), turn=85.0)
+
+
+@pytest.fixture(scope="module")
+def lying_file(lying: Picture, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("sheet") / "a.png"
+    Image.fromarray(lying.rgb).save(path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def sheet(lying: Picture) -> Rectified:
+    made = rectify(lying)
+    assert made is not None
+    return made
+
+
+def test_on_the_sheet_nothing_needs_to_be_said_of_size_and_way_up(lying_file: Path) -> None:
+    seen = look_at(lying_file, ScaleRequest(), rotate="auto")
+    body = bulb()
+    assert seen.scale.source == "sheet"
+    share = seen.scale.measured_error
+    assert share is not None
+    assert 0.0 < share < 0.04
+    for found, true in zip(size_of(seen), (body.width, body.length), strict=True):
+        assert found == pytest.approx(true, rel=min(share, 0.015))
+    assert abs(seen.turn_deg) == pytest.approx(90.0, abs=10.0)
+
+
+def test_the_mask_is_the_photographs(lying_file: Path, lying: Picture) -> None:
+    """The body is the one dark red thing in it."""
+    mask = look_at(lying_file, ScaleRequest(), rotate="auto").silhouette.mask
+    red = lying.rgb[..., 0].astype(int) - lying.rgb[..., 2] > 45
+    assert mask.shape == lying.rgb.shape[:2]
+    assert (mask & red).sum() / (mask | red).sum() > 0.97
+
+
+def test_a_given_length_goes_before_the_sheets(lying_file: Path) -> None:
+    seen = look_at(lying_file, ScaleRequest(width_mm=106.0))
+    assert seen.scale.source == "width"
+    assert size_of(seen)[0] == pytest.approx(106.0)
+    assert seen.scale.measured_error is None
+
+
+def test_photograph_and_frontal_view_are_brought_onto_each_other(sheet: Rectified) -> None:
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.3, 0.7], [1.0, 1.0]])
+    frontal = corners * [sheet.frame.width - 1.0, sheet.frame.height - 1.0]
+    np.testing.assert_allclose(sheet.frontal_of(sheet.photo_of(frontal)), frontal, atol=1e-6)
+
+
+def test_hints_on_the_sheet_are_the_photographs(
+    lying_file: Path, lying: Picture, tmp_path: Path
+) -> None:
+    red = lying.rgb[..., 0].astype(int) - lying.rgb[..., 2] > 45
+    rows, columns = np.flatnonzero(red.any(axis=1)), np.flatnonzero(red.any(axis=0))
+    Image.fromarray(red.astype(np.uint8) * 255).save(tmp_path / "mask.png")
+    free = look_at(lying_file, ScaleRequest(), rotate="auto")
+    box = (columns[0] - 12.0, rows[0] - 12.0, np.ptp(columns) + 24.0, np.ptp(rows) + 24.0)
+    for look in (
+        {"point": (float(columns.mean()), float(rows.mean()))},
+        {"box": box},
+        {"mask": tmp_path / "mask.png"},
+    ):
+        seen = look_at(lying_file, ScaleRequest(), rotate="auto", **look)
+        np.testing.assert_allclose(size_of(seen), size_of(free), rtol=0.015)
+    with pytest.raises(UsageError, match="outside the printed sheet"):
+        look_at(lying_file, ScaleRequest(), point=(1.0, 1.0))
+
+
+def test_doubt_on_the_sheet_shows_the_photograph(
+    lying_file: Path, lying: Picture, sheet: Rectified, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A disc in the frontal view, doubted, comes back where the photograph has it."""
+    spot = np.array([0.4 * sheet.frame.width, 0.6 * sheet.frame.height])
+
+    def doubt(picture: Picture, *_: object) -> Silhouette:
+        y, x = np.mgrid[: picture.rgb.shape[0], : picture.rgb.shape[1]]
+        disc = np.hypot(x - spot[0], y - spot[1]) < 20.0
+        raise Unsure("what is it", ((disc, 0.3, "a way"),), picture.rgb)
+
+    monkeypatch.setattr(sight, "find_silhouette", doubt)
+    with pytest.raises(Unsure) as caught:
+        look_at(lying_file, ScaleRequest())
+    ((mask, confidence, method),) = caught.value.candidates
+    assert (confidence, method) == (0.3, "a way")
+    np.testing.assert_array_equal(caught.value.rgb, lying.rgb)
+    rows, columns = np.nonzero(mask)
+    np.testing.assert_allclose([columns.mean(), rows.mean()], sheet.photo_of(spot), atol=1.5)
+
+
+# --- drawings -------------------------------------------------------------------------------
+
+
+def csv(path: Path, points: FloatArray) -> Path:
+    path.write_text("x,y\n" + "".join(f"{x:.4f},{y:.4f}\n" for x, y in points))
+    return path
+
+
+def asked(file: Path, **look: object) -> Request:
+    return Request(file, look=Look(**look))  # type: ignore[arg-type]
+
+
+def test_drawings_are_turned_and_averaged_too(tmp_path: Path) -> None:
+    closed = np.vstack([PEAR, PEAR[:1]])
+    stands = find_subject(asked(csv(tmp_path / "a.csv", closed)), str)
+    file = csv(tmp_path / "b.csv", turned(closed, 70.0))
+    for rotate in (-70.0, "auto"):
+        made = find_subject(asked(file, rotate=rotate), str)
+        assert made.turn_deg == pytest.approx(-70.0, abs=0.1)
+        assert made.profile.length_mm == pytest.approx(stands.profile.length_mm, rel=2e-3)
+    lopsided = np.where(closed[:, :1] > 0.0, closed * [1.1, 1.0], closed)
+    mean = find_subject(asked(csv(tmp_path / "c.csv", lopsided), symmetric=True), str)
+    outline = mean.profile.outline
+    assert outline is not None
+    half = 0.5 * (np.ptp(PEAR[:, 0]) * 1.05)
+    assert np.ptp(outline[:, 0]) == pytest.approx(2.0 * half, rel=2e-3)
+
+
+def test_an_open_profile_has_no_axis(tmp_path: Path) -> None:
+    file = csv(tmp_path / "a.csv", PEAR[300:900])
+    for look in ({"rotate": "auto"}, {"symmetric": True}):
+        with pytest.raises(UsageError, match="open profile"):
+            find_subject(asked(file, **look), str)
+    plain, half = find_subject(asked(file), str), find_subject(asked(file, rotate=5.0), str)
+    assert half.profile.length_mm == pytest.approx(plain.profile.length_mm, rel=0.01)
+    assert half.turn_deg == 5.0
+
+
+def test_what_a_marker_leaves_open_is_told() -> None:
+    """Without the camera's distance the object's height above the marker stays unknown."""
+    silhouette = Silhouette(np.zeros((4, 2)), np.zeros((2, 2), bool), "mask", 0.0, frozenset())
+    said = sight._notes(
+        replace(silhouette, contour_px=PEAR * [1.0, -1.0]),
+        sight.Scale(0.1, "marker", 0.051),
+        Look(),
+    )
+    assert [note for note in said if "5.1 % off" in note and "--camera-distance" in note]
