@@ -186,7 +186,7 @@ def scene_of(result: Result) -> Scene:
     backdrop = None
     if subject.picture is not None and subject.origin_px is not None:
         backdrop = backdrop_of(
-            subject.picture, subject.scale.mm_per_px, subject.origin_px, subject.turn_deg
+            subject.picture, subject.scale.mm_per_px, subject.origin_px, subject.rotated_deg
         )
     radius = 0.5 * design.tube.outer_diameter_mm
     straight = deform((), layout.length_mm, radius, layout.pose, subject.profile.sign)

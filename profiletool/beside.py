@@ -13,6 +13,7 @@ from profiletool.profile.vector import SUFFIXES, load_vector
 from profiletool.reading import read_file
 from profiletool.records import Design, FloatArray
 from profiletool.report.files import read_shape_csv
+from profiletool.sight import changed
 
 _MOST_BYTES = 50_000_000
 _SAME_MM = 0.02  # lengths nearer than this are of the same profile
@@ -63,6 +64,7 @@ def _drawn(design: Design, folder: Path) -> FloatArray | None:
         drawn = load_vector(path)
         make = profile_of_object if drawn.closed else profile_of_line
         reach = Reach(design.source.side, 0.5 * design.tube.outer_diameter_mm)
-        return make(drawn.points, reach).points
+        points = changed(drawn.points, design.source.rotated_deg, design.source.symmetric)
+        return make(points, reach).points
     except (OSError, ValueError, RuntimeError, ProfiletoolError):  # no such place, or no profile
         return None

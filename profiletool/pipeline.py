@@ -206,7 +206,7 @@ def _design(
             profile_length_mm=profile.length_mm,
             bridged_share=float(np.mean(profile.bridged)),
             origin_px=subject.origin_px,
-            turn_deg=subject.turn_deg,
+            rotated_deg=subject.rotated_deg,
             symmetric=request.look.symmetric,
             scale_error_share=subject.scale.measured_error,
             confidence=None if subject.silhouette is None else subject.silhouette.confidence,

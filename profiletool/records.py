@@ -207,7 +207,7 @@ class Source:
     """Where a design comes from.
 
     ``origin_px`` is the object frame's origin in the picture (in the frontal view of a printed
-    sheet) once that is turned by ``turn_deg``, counter-clockwise about its middle.
+    sheet) once that is turned by ``rotated_deg``, counter-clockwise about its middle.
     ``scale_error_share`` is by how much of itself a scale that was measured in the picture may be
     off, about two standard deviations; ``confidence`` how far the silhouette is to be believed.
     """
@@ -220,7 +220,7 @@ class Source:
     profile_length_mm: float
     bridged_share: float
     origin_px: tuple[float, float] | None
-    turn_deg: float = 0.0
+    rotated_deg: float = 0.0
     symmetric: bool = False
     scale_error_share: float | None = None
     confidence: float | None = None

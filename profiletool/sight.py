@@ -67,7 +67,7 @@ class Seen:
         Its contour and ``touches`` are those of the upright object, its mask that of the
         photograph.
     scale : Scale
-    turn_deg : float
+    rotated_deg : float
         By which the object was turned, counter-clockwise about the picture's middle.
     notes : tuple of str
         What the user should know.
@@ -76,7 +76,7 @@ class Seen:
     picture: Picture
     silhouette: Silhouette
     scale: Scale
-    turn_deg: float = 0.0
+    rotated_deg: float = 0.0
     notes: tuple[str, ...] = field(default=())
 
 
@@ -188,9 +188,9 @@ def _y_up(px: FloatArray) -> FloatArray:
     return px * [1.0, -1.0]
 
 
-def _turned_px(px: FloatArray, turn_deg: float, middle: FloatArray) -> FloatArray:
+def _turned_px(px: FloatArray, rotated_deg: float, middle: FloatArray) -> FloatArray:
     """Turn points (..., 2) of a picture about its middle, counter-clockwise as seen."""
-    return _y_up(turned(_y_up(px - middle), turn_deg)) + middle
+    return _y_up(turned(_y_up(px - middle), rotated_deg)) + middle
 
 
 def turn_of(outline: FloatArray, rotate: float | Literal["auto"]) -> float:
@@ -212,16 +212,16 @@ def turn_of(outline: FloatArray, rotate: float | Literal["auto"]) -> float:
     return found.turn_deg
 
 
-def _upright(silhouette: Silhouette, turn_deg: float, middle: FloatArray) -> Silhouette:
-    if turn_deg == 0.0:
+def _upright(silhouette: Silhouette, rotated_deg: float, middle: FloatArray) -> Silhouette:
+    if rotated_deg == 0.0:
         return silhouette
-    touched = [turned(np.array(_OUTWARD[edge]), turn_deg) for edge in sorted(silhouette.touches)]
+    touched = [turned(np.array(_OUTWARD[edge]), rotated_deg) for edge in sorted(silhouette.touches)]
     touches = frozenset(
         edge
         for edge, outward in _OUTWARD.items()
         if any(float(faced @ outward) > _FACES for faced in touched)
     )
-    contour = _turned_px(silhouette.contour_px, turn_deg, middle)
+    contour = _turned_px(silhouette.contour_px, rotated_deg, middle)
     return replace(silhouette, contour_px=contour, touches=touches)
 
 
@@ -247,6 +247,12 @@ def averaged(outline: FloatArray, least_step: float = 0.0) -> FloatArray:
         )
     step = max(least_step, float(np.ptp(outline, axis=0).max()) / _MEAN_STEPS)
     return mirrored_mean(outline, found.axis_x_mm, step)
+
+
+def changed(points: FloatArray, turn_deg: float, symmetric: bool) -> FloatArray:
+    """Turn a drawing, (N, 2) mm, about its origin, and take the mean of its sides where asked."""
+    points = turned(points, turn_deg) if turn_deg else points
+    return averaged(points) if symmetric else points
 
 
 def _symmetric(silhouette: Silhouette) -> Silhouette:

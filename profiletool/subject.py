@@ -14,10 +14,9 @@ from profiletool.image.scale import ScaleRequest
 from profiletool.joints.assign import INTERFERENCE_MM
 from profiletool.profile.side import top_middle
 from profiletool.profile.target import Reach, profile_of_line, profile_of_object
-from profiletool.profile.upright import turned
 from profiletool.profile.vector import SUFFIXES, load_vector
 from profiletool.records import Material, Picture, Profile, Scale, Side, Silhouette
-from profiletool.sight import Look, averaged, see, turn_of
+from profiletool.sight import Look, changed, see, turn_of
 
 Method = Literal["optimal", "paper"]
 
@@ -60,7 +59,7 @@ class Request:
 class Subject:
     """The object that a design is for; picture, silhouette and origin only where there is one.
 
-    ``origin_px`` is the object frame's origin once the picture is turned by ``turn_deg``, counter-
+    ``origin_px`` is the object frame's origin once the picture is turned by ``rotated_deg``, counter-
     clockwise about its middle. ``notes`` say what the user should know of how it was seen.
     """
 
@@ -69,7 +68,7 @@ class Subject:
     scale: Scale
     origin_px: tuple[float, float] | None
     profile: Profile
-    turn_deg: float = 0.0
+    rotated_deg: float = 0.0
     notes: tuple[str, ...] = ()
 
 
@@ -107,7 +106,7 @@ def find_subject(request: Request, say: Callable[[str], None]) -> Subject:
     reach = replace(reach, noise_mm=silhouette.noise_px * k, spacing_mm=k)
     profile = profile_of_object(outline, reach)
     place = float(origin[0]), float(origin[1])
-    return Subject(seen.picture, silhouette, scale, place, profile, seen.turn_deg, seen.notes)
+    return Subject(seen.picture, silhouette, scale, place, profile, seen.rotated_deg, seen.notes)
 
 
 def _drawn_subject(request: Request, reach: Reach, say: Callable[[str], None]) -> Subject:
@@ -116,10 +115,8 @@ def _drawn_subject(request: Request, reach: Reach, say: Callable[[str], None]) -
     if not drawn.closed and (look.rotate == "auto" or look.symmetric):
         raise UsageError("--rotate auto and --symmetric need an object; this is an open profile")
     turn = turn_of(points, look.rotate)
-    points = turned(points, turn) if turn else points
-    points = averaged(points) if look.symmetric else points
     make = profile_of_object if drawn.closed else profile_of_line
-    profile = make(points, reach)
+    profile = make(changed(points, turn, look.symmetric), reach)
     kind = "closed outline" if drawn.closed else "open profile"
     x, y = profile.points[0]
     say(f"drawing: {kind}, {profile.length_mm:.1f} mm to follow from ({x:.1f}, {y:.1f}) down")

@@ -63,7 +63,7 @@ def size_of(seen: Seen) -> tuple[float, float]:
 @pytest.mark.parametrize("lean", [-38.0, 14.0, 90.0])
 def test_turned_upright_it_has_its_own_width(tmp_path: Path, lean: float) -> None:
     seen = look_at(drawn(tmp_path / "a.png", [turned(PEAR, lean)]), rotate="auto")
-    assert seen.turn_deg == pytest.approx(-lean, abs=0.2)
+    assert seen.rotated_deg == pytest.approx(-lean, abs=0.2)
     assert size_of(seen)[0] == pytest.approx(PEAR_WIDTH, rel=0.01)
     assert seen.notes == ()
 
@@ -78,7 +78,7 @@ def test_degrees_turn_counter_clockwise(tmp_path: Path) -> None:
 
 def test_a_lean_is_told_and_left(tmp_path: Path) -> None:
     seen = look_at(drawn(tmp_path / "a.png", [turned(PEAR, 20.0)]))
-    assert seen.turn_deg == 0.0
+    assert seen.rotated_deg == 0.0
     assert [note for note in seen.notes if "stands 20 deg off upright" in note]
     upright = look_at(drawn(tmp_path / "b.png", [PEAR]))
     assert upright.notes == ()
@@ -89,7 +89,7 @@ def test_an_object_without_axis_is_not_turned(tmp_path: Path) -> None:
     file = drawn(tmp_path / "a.png", [wedge])
     with pytest.raises(NoObject, match="--rotate DEG"):
         look_at(file, rotate="auto")
-    assert look_at(file, rotate=10.0).turn_deg == 10.0
+    assert look_at(file, rotate=10.0).rotated_deg == 10.0
 
 
 @pytest.mark.parametrize(
@@ -215,7 +215,7 @@ def test_on_the_sheet_nothing_needs_to_be_said_of_size_and_way_up(lying_file: Pa
     assert 0.0 < share < 0.04
     for found, true in zip(size_of(seen), (body.width, body.length), strict=True):
         assert found == pytest.approx(true, rel=min(share, 0.015))
-    assert abs(seen.turn_deg) == pytest.approx(90.0, abs=10.0)
+    assert abs(seen.rotated_deg) == pytest.approx(90.0, abs=10.0)
 
 
 def test_the_mask_is_the_photographs(lying_file: Path, lying: Picture) -> None:
@@ -297,7 +297,7 @@ def test_drawings_are_turned_and_averaged_too(tmp_path: Path) -> None:
     file = csv(tmp_path / "b.csv", turned(closed, 70.0))
     for rotate in (-70.0, "auto"):
         made = find_subject(asked(file, rotate=rotate), str)
-        assert made.turn_deg == pytest.approx(-70.0, abs=0.1)
+        assert made.rotated_deg == pytest.approx(-70.0, abs=0.1)
         assert made.profile.length_mm == pytest.approx(stands.profile.length_mm, rel=2e-3)
     lopsided = np.where(closed[:, :1] > 0.0, closed * [1.1, 1.0], closed)
     mean = find_subject(asked(csv(tmp_path / "c.csv", lopsided), symmetric=True), str)
@@ -314,7 +314,7 @@ def test_an_open_profile_has_no_axis(tmp_path: Path) -> None:
             find_subject(asked(file, **look), str)
     plain, half = find_subject(asked(file), str), find_subject(asked(file, rotate=5.0), str)
     assert half.profile.length_mm == pytest.approx(plain.profile.length_mm, rel=0.01)
-    assert half.turn_deg == 5.0
+    assert half.rotated_deg == 5.0
 
 
 def test_what_a_marker_leaves_open_is_told() -> None:

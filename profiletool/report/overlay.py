@@ -20,6 +20,7 @@ from profiletool.joints.kinematics import Bend
 from profiletool.profile.offset import offset_curve, offset_points
 from profiletool.records import Design, FloatArray, Joint, Picture, Profile, Shape
 from profiletool.report.palette import BLUE, GREEN, GREY, INK, PURPLE, RED, SKY, YELLOW
+from profiletool.report.text import scale_text
 
 _DPI = 130
 _LONGEST_PX = 1000  # the picture is shown no finer than the figure resolves
@@ -61,7 +62,7 @@ class Scene:
 
 
 def backdrop_of(
-    picture: Picture, mm_per_px: float, origin_px: tuple[float, float], turn_deg: float = 0.0
+    picture: Picture, mm_per_px: float, origin_px: tuple[float, float], rotated_deg: float = 0.0
 ) -> Backdrop:
     """Place a picture in the object frame, thinned to what the figure resolves.
 
@@ -75,10 +76,10 @@ def backdrop_of(
         cover = picture.alpha[::every, ::every, None] / 255.0
         rgb = np.rint(255.0 - (255.0 - rgb) * cover).astype(np.uint8)
     size = np.array([width, height], float)
-    if turn_deg:
+    if rotated_deg:
         pixel = size / rgb.shape[1::-1]
         image = Image.fromarray(rgb).rotate(
-            turn_deg, Image.Resampling.BICUBIC, expand=True, fillcolor="white"
+            rotated_deg, Image.Resampling.BICUBIC, expand=True, fillcolor="white"
         )
         rgb, size = np.asarray(image), pixel * image.size
     x, y = 0.5 * (width - 1.0) - origin_px[0], origin_px[1] - 0.5 * (height - 1.0)
@@ -305,7 +306,7 @@ def _status(design: Design) -> list[tuple[str, str]]:
 
 def _facts(design: Design) -> list[str]:
     tube, source, fit = design.tube, design.source, design.fit
-    scale = "" if source.mm_per_px is None else f"  ({source.mm_per_px:.4g} mm per pixel)"
+    scale = "" if source.mm_per_px is None else f"  ({scale_text(source)})"
     off = [("formula off the profile", fit.formula)]
     if fit.response is not None:
         off.append(("joint response off the profile", fit.response))

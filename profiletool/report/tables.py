@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import pi
 
 from profiletool import __version__
-from profiletool.records import Design, FeState, FloatArray, Joint, Verification
+from profiletool.records import Design, FeState, FloatArray, Joint, Source, Verification
 from profiletool.report.markup import Markup, joined, pairs, signed, table, tag
+from profiletool.report.text import scale_text
 from profiletool.template.labels import short
 from profiletool.template.unroll import slit_rows, slits
 
@@ -119,14 +120,25 @@ def threads_uncut(joint: Joint, design: Design) -> str:
     return short(width / design.gauze.pitch_mm)
 
 
+def _seen(source: Source) -> Iterator[tuple[str, str]]:
+    """Tell how the object was found and what was done to its outline."""
+    if source.confidence is not None:
+        yield "Silhouette", f"sure to {100.0 * source.confidence:.0f} %"
+    if source.rotated_deg:
+        yield "Turned", f"{source.rotated_deg:.1f}° counter-clockwise"
+    if source.symmetric:
+        yield "Sides", "the mean of both"
+
+
 def provenance(design: Design, found: Verification | None, options: Sequence[Option]) -> Markup:
     """Tell what the design was made from, and how."""
     source, formula = design.source, design.formula
-    scale = "in mm already" if source.mm_per_px is None else f"{source.mm_per_px:.6g} mm per pixel"
+    scale = "in mm already" if source.mm_per_px is None else scale_text(source, digits=6)
     rows: list[tuple[str, str]] = [
         ("Input", tag("bdi", source.file)),
         ("SHA-256 of the input", tag("code", source.sha256)),
         ("Scale", f"{scale}, from {source.scale_source}"),
+        *_seen(source),
         (
             "Profile",
             f"{source.side} side, {source.profile_length_mm:.1f} mm, "

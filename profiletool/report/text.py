@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from formula.table import Assignment, Table
 from profiletool.joints.limits import named
-from profiletool.records import Design, Misfit
+from profiletool.records import Design, Misfit, Source
 
 EXTRAPOLATED = "beyond what the formula was fitted on: extrapolated"
 _COLUMNS = ("pressure_bar", "openF_mm", "alpha_closed_deg", "theta_deg")
@@ -38,6 +38,13 @@ def joint_table(design: Design) -> str:
     if design.fit.fe is not None:
         lines.append(f"by FE off the profile:                 {off_text(design.fit.fe)}")
     return "\n".join(lines) + "\n"
+
+
+def scale_text(source: Source, digits: int = 4) -> str:
+    """Say a picture's scale, and how sure it is where that was measured."""
+    error = source.scale_error_share
+    within = "" if error is None else f", within {100.0 * error:.2g} %"
+    return f"{source.mm_per_px:.{digits}g} mm per pixel{within}"
 
 
 def off_text(misfit: Misfit) -> str:
