@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from profiletool.errors import NoObject, UsageError
-from profiletool.image.scale import ScaleRequest
+from profiletool.image.scale import ScaleRequest, check_scale
 from profiletool.joints.assign import INTERFERENCE_MM
 from profiletool.profile.side import top_middle
 from profiletool.profile.target import Reach, profile_of_line, profile_of_object
@@ -59,8 +59,8 @@ class Request:
 class Subject:
     """The object that a design is for; picture, silhouette and origin only where there is one.
 
-    ``origin_px`` is the object frame's origin once the picture is turned by ``rotated_deg``, counter-
-    clockwise about its middle. ``notes`` say what the user should know of how it was seen.
+    ``origin_px`` is the object frame's origin once the picture is turned by ``rotated_deg``,
+    counter-clockwise about its middle. ``notes`` say what the user should know of how it was seen.
     """
 
     picture: Picture | None
@@ -125,6 +125,7 @@ def _drawn_subject(request: Request, reach: Reach, say: Callable[[str], None]) -
 
 def check_request(request: Request) -> None:
     """Refuse options that no design can be made with."""
+    check_scale(request.scale)
     material = request.material
     positive = {
         "--diameter": material.outer_diameter_mm,

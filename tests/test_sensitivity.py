@@ -139,6 +139,15 @@ def test_scale_on_a_straight_profile(design: Design, run: verify.Run) -> None:
     assert entry.rms_mm == pytest.approx(most / np.sqrt(3.0), abs=0.0051)
 
 
+def test_the_scales_own_error_where_it_was_measured(
+    design: Design, run: verify.Run, profile: Profile, found: tuple[Sensitivity, ...]
+) -> None:
+    measured = replace(design, source=replace(design.source, scale_error_share=0.035))
+    last = sensitivity_of(measured, run, profile)[-1]
+    assert last.what == "scale 3.5 % off"
+    assert last.rms_mm == pytest.approx(3.5 * found[-1].rms_mm, abs=2e-3)
+
+
 def test_thicker_wall_less_bent(
     design: Design, profile: Profile, found: tuple[Sensitivity, ...]
 ) -> None:

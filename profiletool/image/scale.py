@@ -76,7 +76,7 @@ def scale_of(picture: Picture, silhouette: Silhouette, request: ScaleRequest) ->
     NoScale
         Nothing is given or stored, or the marker is not found or not trusted.
     """
-    _check(request)
+    check_scale(request)
     width_px, height_px = (float(side) for side in np.ptp(silhouette.contour_px, axis=0))
     noise_px = 2.0 * math.sqrt(2.0) * silhouette.noise_px  # of an extent, two deviations
     if request.height_mm is not None:
@@ -95,7 +95,13 @@ def scale_of(picture: Picture, silhouette: Silhouette, request: ScaleRequest) ->
     )
 
 
-def _check(request: ScaleRequest) -> None:
+def check_scale(request: ScaleRequest) -> None:
+    """Refuse lengths that are no lengths.
+
+    Raises
+    ------
+    UsageError
+    """
     for option, value in {
         "--height": request.height_mm,
         "--width": request.width_mm,
