@@ -59,6 +59,12 @@ def test_hints_that_make_no_sense(tmp_path: Path, option: str, value: str, words
     assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
 
 
+def test_lengths_are_judged_where_they_are_not_needed_too(tmp_path: Path) -> None:
+    result = unverified(csv(tmp_path / "a.csv", PEAR), "--camera-distance", "-5")
+    assert result.exit_code == 2
+    assert "--camera-distance is -5" in error_of(result)
+
+
 def test_a_mask_of_another_size_is_refused(tmp_path: Path) -> None:
     Image.new("L", (20, 20), 255).save(tmp_path / "mask.png")
     file = picture(tmp_path / "a.png")

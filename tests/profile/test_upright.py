@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from profiletool.image.load import load_picture
+from profiletool.image.silhouette import find_silhouette
 from profiletool.profile.symmetry import LARGEST_MISMATCH
 from profiletool.profile.upright import turned, upright_of
 
@@ -50,9 +54,15 @@ def test_a_disc_stays_as_it_is() -> None:
     assert upright_of(DISC).turn_deg == pytest.approx(0.0, abs=0.5)
 
 
-def test_a_mug_is_not_taken_to_be_symmetric_about_the_diagonal_of_its_handle() -> None:
-    found = upright_of(MUG)
-    assert abs(found.turn_deg) < 30.0 or abs(abs(found.turn_deg) - 90.0) < 30.0
+def test_a_mug_has_no_axis() -> None:
+    assert upright_of(MUG).mismatch > LARGEST_MISMATCH
+
+
+def test_the_diagonal_of_a_mug_and_its_handle_is_no_axis(shared: Path) -> None:
+    """Of this one the mirror image about the diagonal is off by 8 %, about any other by 13 %."""
+    mug = find_silhouette(load_picture(shared / "photos" / "mug_alpha.png"))
+    found = upright_of(mug.contour_px * [1.0, -1.0])
+    assert abs(found.turn_deg) < 30.0
     assert found.mismatch > LARGEST_MISMATCH
 
 
