@@ -117,6 +117,14 @@ def _read_config(context: typer.Context, path: Path) -> dict[str, Any]:
     return known
 
 
+def _doubted(unsure: Unsure, file: Path) -> NoObject:
+    """Draw what the object could be, and say where."""
+    from profiletool import artifacts, output
+
+    output.write_file(file, artifacts.candidates_png(unsure), force=True)
+    return NoObject(f"{unsure}; {file} shows what it could be")
+
+
 @app.callback()
 def _profiletool(
     version: Annotated[
@@ -246,10 +254,9 @@ def design(
     """Design an actuator that mirrors the side of an object, and its cut template."""
     del config  # its options are among the others by now
     with exit_codes(debug):
-        from profiletool import artifacts, output, pipeline, subject
+        from profiletool import output, pipeline, subject
         from profiletool.image.scale import ScaleRequest
         from profiletool.records import Material
-        from profiletool.report.text import joint_table
         from profiletool.sight import Look
         from profiletool.template.kerf import check_kerf
         from profiletool.template.kinds import Wish
@@ -301,9 +308,11 @@ def design(
             with progress_bar("finite elements", quiet) as progress:
                 result = pipeline.run(request, say, progress)
         except Unsure as unsure:
-            shown = Path(f"{out or picture.stem}_candidates.png")
-            output.write_file(shown, artifacts.candidates_png(unsure), force=True)
-            raise NoObject(f"{unsure}; {shown} shows what it could be") from unsure
+            raise _doubted(unsure, Path(f"{out or picture.stem}_candidates.png")) from unsure
+        # Heavy: a picture that is refused is refused sooner without it.
+        from profiletool import artifacts
+        from profiletool.report.text import joint_table
+
         files = artifacts.files_of(result, Wish(kerf_mm=kerf, date=date), paper)
         output.write_folder(folder, files, force)
         text = files["design.json"].decode() if as_json else joint_table(result.design)
