@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import sys
 import tomllib
@@ -109,6 +110,8 @@ def _read_config(context: typer.Context, path: Path) -> dict[str, Any]:
     known = {}
     for key, value in tree.items():
         parameter = names.get(key.replace("_", "-"))
+        if isinstance(value, list) and "," in str(getattr(parameter, "metavar", "")):
+            value = ",".join(str(part) for part in value)
         if parameter is None or isinstance(value, dict | list):
             raise UsageError(f'{path}: "{key}" is no option of design; see design --help')
         if isinstance(value, bool) != bool(getattr(parameter, "is_flag", False)):
@@ -117,11 +120,13 @@ def _read_config(context: typer.Context, path: Path) -> dict[str, Any]:
     return known
 
 
-def _doubted(unsure: Unsure, file: Path) -> NoObject:
-    """Draw what the object could be, and say where."""
+def _doubted(unsure: Unsure, name: str) -> NoObject:
+    """Draw what the object could be, and say where: never over another file."""
     from profiletool import artifacts, output
 
-    output.write_file(file, artifacts.candidates_png(unsure), force=True)
+    names = itertools.chain([name], (f"{name}_{k}" for k in itertools.count(2)))
+    file = next(file for one in names if not (file := Path(f"{one}.png")).exists())
+    output.write_file(file, artifacts.candidates_png(unsure), force=False)
     return NoObject(f"{unsure}; {file} shows what it could be")
 
 
@@ -308,7 +313,7 @@ def design(
             with progress_bar("finite elements", quiet) as progress:
                 result = pipeline.run(request, say, progress)
         except Unsure as unsure:
-            raise _doubted(unsure, Path(f"{out or picture.stem}_candidates.png")) from unsure
+            raise _doubted(unsure, f"{out or picture.stem}_candidates") from unsure
         # Heavy: a picture that is refused is refused sooner without it.
         from profiletool import artifacts
         from profiletool.report.text import joint_table

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -9,14 +10,14 @@ from typing import Literal
 
 import numpy as np
 
-from profiletool.errors import NoObject, Unsure, UsageError
-from profiletool.image.hint import Box, Hint, check_hint
+from profiletool.errors import NoObject, NoScale, Unsure, UsageError
+from profiletool.image.hint import LEAST_PX, Box, Hint, check_hint
 from profiletool.image.load import load_mask, load_picture
 from profiletool.image.marker import find_markers
 from profiletool.image.measure import measure
 from profiletool.image.rectify import Rectified, edge_warnings, rectify
 from profiletool.image.region import Point
-from profiletool.image.scale import ScaleRequest, scale_of
+from profiletool.image.scale import ScaleRequest, marker_scale, scale_of
 from profiletool.image.silhouette import find_silhouette
 from profiletool.profile.symmetry import LARGEST_MISMATCH, mirrored_mean, symmetry_of
 from profiletool.profile.upright import turned, upright_of
@@ -24,8 +25,9 @@ from profiletool.records import FloatArray, Picture, Scale, Silhouette
 
 _MEAN_STEPS = 600  # of an outline's longer side, in which its two sides are averaged
 _LEANING_DEG, _LEANING_SHARE = 3.0, 0.5  # a lean that is told, and what upright then gains
+_ALONG_PX, _ALONG_SHARE = 1.5, 0.05  # of a contour along a box: what a box may cut
 _INEXACT = 0.02  # of a scale: an error that is told
-_UNDOUBTED = 0.8  # a confidence that needs no word
+_UNDOUBTED, _UNFIT = 0.8, 0.1  # confidences: one that needs no word, one of a wrong mask
 _OUTWARD = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "top": (0.0, 1.0), "bottom": (0.0, -1.0)}
 _FACES = np.cos(np.radians(67.5))  # of a frame's edge once turned: what still counts as a side
 
@@ -91,34 +93,71 @@ def see(file: Path, asked: ScaleRequest, look: Look, say: Callable[[str], None])
     """
     picture = load_picture(file)
     hint = _hint(look, picture)
-    sheet = rectify(picture) if asked.mm_per_px is None else None
+    sheet = rectify(picture)
     if sheet is not None:
+        _check_said(asked)
         say(_sheet_line(sheet))
     silhouette = _found(picture, sheet, hint, asked)
     frontal = picture if sheet is None else sheet.picture
-    notes = [] if sheet is None else [*sheet.warnings, *edge_warnings(sheet, silhouette)]
-    middle = 0.5 * (np.array(frontal.rgb.shape[1::-1], float) - 1.0)
+    notes = (
+        [*_box_note(look.box, silhouette)]
+        if sheet is None
+        else [*sheet.warnings, *edge_warnings(sheet, silhouette)]
+    )
+    scale = None
+    if sheet is not None and asked.height_mm is None and asked.width_mm is None:
+        silhouette, scale = _measured(sheet, silhouette, asked)
     turn = turn_of(_y_up(silhouette.contour_px), look.rotate)
-    upright = _upright(silhouette, turn, middle)
     if look.rotate == "auto" and turn:
         say(f"turned upright by {turn:.1f} deg counter-clockwise; --rotate DEG turns it otherwise")
-    if sheet is not None and _unsaid(asked):
-        foot = _turned_px(np.array(sheet.camera.foot_px), turn, middle)
-        camera = replace(sheet.camera, foot_px=(float(foot[0]), float(foot[1])))
-        found = measure(replace(sheet, camera=camera), upright, asked.camera_distance_mm)
-        upright, scale = found.silhouette, found.scale
-    else:
-        scale = scale_of(frontal, upright, asked)
+    upright = _upright(silhouette, turn, _middle(frontal))
     if look.symmetric:
         upright = _symmetric(upright)
+    if scale is None:
+        scale = scale_of(frontal, upright, asked)
     if sheet is not None:
         upright = replace(upright, mask=sheet.photo_mask_of(upright.mask))
     notes += _notes(upright, scale, look)
     return Seen(frontal, upright, scale, turn, tuple(notes))
 
 
-def _unsaid(asked: ScaleRequest) -> bool:
-    return asked == ScaleRequest(camera_distance_mm=asked.camera_distance_mm)
+# --- on the printed sheet -------------------------------------------------------------------
+
+
+def _check_said(asked: ScaleRequest) -> None:
+    if asked.mm_per_px is not None:
+        raise UsageError(
+            "the picture shows a printed sheet, which tells its scale: leave --mm-per-px away, or "
+            "crop the sheet out"
+        )
+
+
+def _measured(
+    sheet: Rectified, silhouette: Silhouette, asked: ScaleRequest
+) -> tuple[Silhouette, Scale]:
+    """Measure an object whatever its way up: with its axis upright, then turned back.
+
+    A marker in the sheet's field sets the size of its print right.
+    """
+    distance_mm = asked.camera_distance_mm
+    middle = _middle(sheet.picture)
+    turn = upright_of(_y_up(silhouette.contour_px)).turn_deg
+    foot = _turned_px(np.array(sheet.camera.foot_px), turn, middle)
+    camera = replace(sheet.camera, foot_px=(float(foot[0]), float(foot[1])))
+    stands = replace(silhouette, contour_px=_turned_px(silhouette.contour_px, turn, middle))
+    turned_sheet = replace(sheet, camera=camera)
+    made = measure(turned_sheet, stands, distance_mm)
+    # A slanting view spoils the symmetry of what is seen, not that of a round body's section.
+    if made.round and upright_of(_y_up(made.silhouette.contour_px)).mismatch > LARGEST_MISMATCH:
+        made = measure(turned_sheet, stands, distance_mm, revolved=False)
+    contour = _turned_px(made.silhouette.contour_px, -turn, middle)
+    scale = made.scale
+    if asked.marker_mm is not None:
+        flat = marker_scale(sheet.picture, asked.marker_mm)
+        share = math.hypot(flat.error_share or 0.0, scale.error_share or 0.0)
+        size = flat.mm_per_px / (sheet.picture.mm_per_px or 1.0)
+        scale = Scale(size * scale.mm_per_px, "marker", share)
+    return replace(silhouette, contour_px=contour), scale
 
 
 def _sheet_line(sheet: Rectified) -> str:
@@ -147,6 +186,12 @@ def _found(
         markers = find_markers(picture) if asked.marker_mm is not None else []
         return find_silhouette(picture, markers, hint)
     markers = find_markers(sheet.plain) if asked.marker_mm is not None else []
+    unsized = asked.height_mm is None and asked.width_mm is None
+    if asked.marker_mm is not None and not markers and unsized:
+        raise NoScale(
+            "no ArUco DICT_4X4_50 marker lies in the printed sheet's field; leave --marker-mm "
+            "away: the sheet tells the scale"
+        )
     try:
         return find_silhouette(sheet.plain, markers, _frontal_hint(hint, sheet))
     except Unsure as unsure:
@@ -176,12 +221,20 @@ def _frontal_hint(hint: Hint, sheet: Rectified) -> Hint:
         )
         there = np.clip(sheet.frontal_of(corners), 0.0, size)
         low, high = there.min(axis=0), there.max(axis=0)
+        if min(high - low) < LEAST_PX:
+            raise UsageError("--box lies outside the printed sheet; the object must lie on it")
         box = (*low.tolist(), *(high - low).tolist())
     mask = None if hint.mask is None else sheet.mask_of(hint.mask)
+    if mask is not None and not mask.any():
+        raise UsageError("the mask lies outside the printed sheet; the object must lie on it")
     return Hint(box, point, mask)
 
 
 # --- turning it -----------------------------------------------------------------------------
+
+
+def _middle(picture: Picture) -> FloatArray:
+    return 0.5 * (np.array(picture.rgb.shape[1::-1], float) - 1.0)
 
 
 def _y_up(px: FloatArray) -> FloatArray:
@@ -270,7 +323,9 @@ def _symmetric(silhouette: Silhouette) -> Silhouette:
 
 
 def _notes(silhouette: Silhouette, scale: Scale, look: Look) -> Iterator[str]:
-    if look.mask is None and silhouette.confidence < _UNDOUBTED:
+    if look.mask is not None and silhouette.confidence < _UNFIT:
+        yield "the mask's edge follows nothing that is seen in the picture: look at overlay.png"
+    elif look.mask is None and silhouette.confidence < _UNDOUBTED:
         yield (
             f"the silhouette is sure to {100.0 * silhouette.confidence:.0f} % only: look at it in "
             "overlay.png; --box, --point or --mask say where the object is"
@@ -284,6 +339,16 @@ def _notes(silhouette: Silhouette, scale: Scale, look: Look) -> Iterator[str]:
         )
     if look.rotate == 0.0:
         yield from _lean(silhouette)
+
+
+def _box_note(box: Box | None, silhouette: Silhouette) -> Iterator[str]:
+    if box is None:
+        return
+    x, y = silhouette.contour_px.T
+    left, top, w, h = box
+    off = np.abs(np.stack([x - left, x - left - w, y - top, y - top - h])).min(axis=0)
+    if np.mean(off < _ALONG_PX) > _ALONG_SHARE:
+        yield "the silhouette runs along --box, which may cut the object: look at overlay.png"
 
 
 def _lean(silhouette: Silhouette) -> Iterator[str]:

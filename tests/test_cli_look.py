@@ -34,6 +34,11 @@ def test_doubt_leaves_the_candidates_picture_and_no_folder(shared: Path, tmp_pat
     assert again.exit_code == 5
     assert (tmp_path / "mine_candidates.png").is_file()
     assert not (tmp_path / "mine").exists()
+    (tmp_path / "mine_candidates.png").write_text("precious")
+    assert "mine_candidates_2.png" in error_of(
+        unverified(photo, "--height", 90, "--out", "mine", "--force")
+    )
+    assert (tmp_path / "mine_candidates.png").read_text() == "precious"
     pointed = unverified(photo, "--height", 90, "--point", "90,270")
     assert pointed.exit_code == 0, pointed.stderr
     assert "% only: look at it in overlay.png" in pointed.stderr
@@ -77,7 +82,9 @@ def test_a_mask_of_another_size_is_refused(tmp_path: Path) -> None:
 
 def test_what_was_asked_for_is_in_the_design_and_the_report(tmp_path: Path) -> None:
     file = drawn(tmp_path / "a.png", [turned(PEAR, 30.0)])
-    (tmp_path / "look.toml").write_text('rotate = "auto"\nsymmetric = true\n')
+    (tmp_path / "look.toml").write_text(
+        'rotate = "auto"\nsymmetric = true\npoint = [240, 200]\nbox = "90,50,300,300"\n'
+    )
     result = unverified(file, "--height", 120, "--config", tmp_path / "look.toml")
     assert result.exit_code == 0, result.stderr
     assert "turned upright by -30." in result.stderr

@@ -8,10 +8,11 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+import shapely
 from PIL import Image
 
 from profiletool import sight
-from profiletool.errors import NoObject, Unsure, UsageError
+from profiletool.errors import NoObject, NoScale, Unsure, UsageError
 from profiletool.image.board import BOARDS
 from profiletool.image.rectify import Rectified, rectify
 from profiletool.image.scale import ScaleRequest
@@ -137,6 +138,7 @@ def test_the_mean_of_both_sides_is_taken(tmp_path: Path) -> None:
     file = drawn(tmp_path / "a.png", [lopsided], size=(800, 600), k=4.0)
     plain, mean = look_at(file), look_at(file, symmetric=True)
     assert size_of(mean)[0] == pytest.approx(size_of(plain)[0], rel=0.003)
+    assert size_of(mean)[1] == pytest.approx(PEAR_HEIGHT, abs=1e-6)  # the height that was given
     here, there = (symmetry_of(one.silhouette.contour_px).mismatch for one in (plain, mean))
     assert there < 1e-3
     assert here > 10.0 * there
@@ -173,6 +175,54 @@ def test_of_two_objects_alike_a_hint_takes_one(tmp_path: Path) -> None:
     seen = look_at(file, mask=tmp_path / "mask.png")
     np.testing.assert_allclose(np.ptp(seen.silhouette.contour_px, axis=0), [140, 200], atol=2.0)
     assert seen.silhouette.method == "mask"
+
+
+def test_a_mask_is_narrowed_by_point_and_box(tmp_path: Path) -> None:
+    """Of two regions the smaller one, which alone would not be taken."""
+    file = drawn(tmp_path / "a.png", TWO)
+    mask = np.zeros((400, 480), np.uint8)
+    mask[100:300, 280:440] = 255
+    mask[120:280, 60:170] = 255
+    Image.fromarray(mask).save(tmp_path / "mask.png")
+    assert look_at(file, mask=tmp_path / "mask.png").silhouette.contour_px[:, 0].min() > 270.0
+    for look in ({"point": (100.0, 200.0)}, {"box": (40.0, 80.0, 160.0, 240.0)}):
+        seen = look_at(file, mask=tmp_path / "mask.png", **look)
+        np.testing.assert_allclose(np.ptp(seen.silhouette.contour_px, axis=0), [110, 160], atol=2)
+    with pytest.raises(UsageError, match="outside what --mask holds"):
+        look_at(file, mask=tmp_path / "mask.png", point=(220.0, 20.0))
+
+
+def test_masks_that_show_nothing(tmp_path: Path) -> None:
+    file = drawn(tmp_path / "a.png", [PEAR])
+    speck = np.zeros((400, 480), np.uint8)
+    speck[200, 200] = 255
+    Image.fromarray(speck).save(tmp_path / "speck.png")
+    with pytest.raises(UsageError, match="nothing 16 pixels wide"):
+        look_at(file, mask=tmp_path / "speck.png")
+    speck[20:100, 20:90] = 255
+    Image.fromarray(speck).save(tmp_path / "beside.png")
+    seen = look_at(file, mask=tmp_path / "beside.png")
+    assert [note for note in seen.notes if "follows nothing" in note]
+
+
+@pytest.mark.parametrize("name", ["pear_alpha.png", "cylinder_alpha.png", "bulb_on_grey.jpg"])
+def test_a_mask_given_back_gives_the_same_outline(shared: Path, tmp_path: Path, name: str) -> None:
+    """Of a cut-out trimmed to its own size too, which runs into no frame."""
+    first = look_at(shared / "photos" / name)
+    Image.fromarray(first.silhouette.mask).save(tmp_path / "mask.png")
+    again = look_at(shared / "photos" / name, mask=tmp_path / "mask.png")
+    assert again.silhouette.touches == first.silhouette.touches
+    np.testing.assert_allclose(size_of(again), size_of(first), rtol=0.01)
+    here, there = (shapely.Polygon(one.silhouette.contour_px) for one in (first, again))
+    assert here.symmetric_difference(there).area / here.area < 0.02
+
+
+def test_a_box_through_the_object_is_told(tmp_path: Path) -> None:
+    file = drawn(tmp_path / "a.png", [PEAR])
+    through = look_at(file, box=(100.0, 60.0, 280.0, 200.0))
+    assert [note for note in through.notes if "runs along --box" in note]
+    round_ = look_at(file, box=(100.0, 40.0, 280.0, 320.0))
+    assert not [note for note in round_.notes if "--box" in note]
 
 
 def test_hints_that_do_not_fit_are_refused(tmp_path: Path) -> None:
@@ -218,6 +268,81 @@ def test_on_the_sheet_nothing_needs_to_be_said_of_size_and_way_up(lying_file: Pa
     assert abs(seen.rotated_deg) == pytest.approx(90.0, abs=10.0)
 
 
+@pytest.mark.parametrize(
+    ("shot", "turn"),
+    [(SHOT, 85.0), (replace(SHOT, tilt=30.0, azimuth=0.0, k1=0.0), 135.0), (SHOT, 40.0)],
+)
+def test_on_the_sheet_it_may_lie_any_way(tmp_path: Path, shot: Shot, turn: float) -> None:
+    """Not turned upright, it has its own size along its own axis all the same."""
+    body = bulb(0.9)
+    made = photograph(BOARDS[0], body, shot, np.random.default_rng(6), turn=turn)
+    Image.fromarray(made.rgb).save(tmp_path / "a.png")
+    seen = look_at(tmp_path / "a.png", ScaleRequest())
+    contour = seen.silhouette.contour_px * [1.0, -1.0] * seen.scale.mm_per_px
+    size = np.ptp(turned(contour, turn), axis=0)
+    np.testing.assert_allclose(size, [body.width, body.length], rtol=0.01)
+    assert [note for note in seen.notes if "deg off upright" in note]
+
+
+def test_a_slab_on_the_sheet_keeps_the_outline_that_is_seen(
+    lying: Picture, sheet: Rectified
+) -> None:
+    """What no axis mirrors has no section: its scale only is that of its height."""
+    wedge = np.array([[300.0, 300.0], [600.0, 420.0], [330.0, 640.0]])
+    mask = np.zeros((1, 1), bool)
+    silhouette = Silhouette(wedge, mask, "plain ground", 0.05, frozenset())
+    seen, scale = sight._measured(sheet, silhouette, ScaleRequest())
+    np.testing.assert_allclose(seen.contour_px, wedge, atol=1e-6)
+    assert sheet.picture.mm_per_px is not None
+    assert 0.8 * sheet.picture.mm_per_px < scale.mm_per_px < sheet.picture.mm_per_px
+
+
+@pytest.mark.parametrize("distance", [0.6, 60.0, 1e9])
+def test_a_camera_somewhere_else_than_the_sheet_shows_is_refused(
+    lying_file: Path, distance: float
+) -> None:
+    with pytest.raises(UsageError, match=r"but the sheet shows the camera about \d{3} mm"):
+        look_at(lying_file, ScaleRequest(camera_distance_mm=distance))
+
+
+def test_what_the_sheet_tells_is_not_given_another_way(lying_file: Path) -> None:
+    with pytest.raises(UsageError, match="leave --mm-per-px away"):
+        look_at(lying_file, ScaleRequest(mm_per_px=0.2))
+    with pytest.raises(NoScale, match="leave --marker-mm away"):
+        look_at(lying_file, ScaleRequest(marker_mm=30.0))
+
+
+def test_a_marker_in_the_field_sets_the_sheets_size_right(lying: Picture, tmp_path: Path) -> None:
+    """Said to be 33 mm, it makes all else a tenth larger."""
+    sheet = rectify(photograph(BOARDS[0], None, SHOT, np.random.default_rng(3)))
+    assert sheet is not None
+    assert sheet.picture.mm_per_px is not None
+    cells = cv2.aruco.generateImageMarker(
+        cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50), 5, 120
+    )
+    side = round(30.0 / sheet.picture.mm_per_px)
+    rgb = lying.rgb.copy()
+    left, top = round(0.6 * sheet.frame.width), round(0.62 * sheet.frame.height)
+    corners = np.array([[0, 0], [side, 0], [side, side], [0, side]]) + np.array([left, top])
+    here = np.array([[-0.5, -0.5], [119.5, -0.5], [119.5, 119.5], [-0.5, 119.5]])
+    to = cv2.getPerspectiveTransform(
+        here.astype(np.float32), sheet.photo_of(corners.astype(float)).astype(np.float32)
+    )
+    size = (rgb.shape[1], rgb.shape[0])
+    shown = cv2.warpPerspective(np.full_like(cells, 255), to, size) > 127
+    rgb[shown] = cv2.warpPerspective(cells, to, size, flags=cv2.INTER_AREA)[shown][:, None]
+    Image.fromarray(rgb).save(tmp_path / "a.png")
+    for side_mm in (30.0, 33.0):
+        seen = look_at(tmp_path / "a.png", ScaleRequest(marker_mm=side_mm), rotate="auto")
+        assert seen.scale.source == "marker"
+        share = seen.scale.measured_error
+        assert share is not None
+        assert share < 0.06
+        np.testing.assert_allclose(
+            size_of(seen), np.array([60.0, 106.0]) * side_mm / 30.0, rtol=0.015
+        )
+
+
 def test_the_mask_is_the_photographs(lying_file: Path, lying: Picture) -> None:
     """The body is the one dark red thing in it."""
     mask = look_at(lying_file, ScaleRequest(), rotate="auto").silhouette.mask
@@ -255,8 +380,16 @@ def test_hints_on_the_sheet_are_the_photographs(
         seen = look_at(lying_file, ScaleRequest(), rotate="auto", **look)
         np.testing.assert_allclose(size_of(seen), size_of(free), rtol=0.015)
         assert (seen.silhouette.method == "mask") is ("mask" in look)
-    with pytest.raises(UsageError, match="outside the printed sheet"):
-        look_at(lying_file, ScaleRequest(), point=(1.0, 1.0))
+    off = np.zeros_like(red)
+    off[:20, :20] = True
+    Image.fromarray(off).save(tmp_path / "off.png")
+    for look in (
+        {"point": (1.0, 1.0)},
+        {"box": (0.0, 0.0, 20.0, 20.0)},
+        {"mask": tmp_path / "off.png"},
+    ):
+        with pytest.raises(UsageError, match="outside the printed sheet"):
+            look_at(lying_file, ScaleRequest(), **look)
 
 
 def test_doubt_on_the_sheet_shows_the_photograph(

@@ -84,13 +84,15 @@ def position_noise(polygon: FloatArray) -> float:
     return float(1.4826 * np.median(across) / np.sqrt(20.0))
 
 
-def smoothed(polygon: FloatArray) -> tuple[FloatArray, float]:
+def smoothed(polygon: FloatArray, least_noise: float = 0.0) -> tuple[FloatArray, float]:
     """Smooth a contour as far as its noise demands.
 
     Parameters
     ----------
     polygon : (N, 2)
         Closed contour in pixels.
+    least_noise : float
+        What is known of the noise, where it is too regular to be seen.
 
     Returns
     -------
@@ -99,7 +101,7 @@ def smoothed(polygon: FloatArray) -> tuple[FloatArray, float]:
     noise_px : float
         Standard deviation of its points that remains.
     """
-    noise = position_noise(polygon)
+    noise = max(position_noise(polygon), least_noise)
     points = resampled(polygon, 0.5)
     window = min(2 * round(3 + 25 * noise) + 1, _LONGEST_WINDOW)
     if noise < _QUIET_PX or len(points) < 2 * _SHORTEST_PX:

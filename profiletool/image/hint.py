@@ -8,7 +8,7 @@ from profiletool.errors import UsageError
 from profiletool.image.ground import BoolImage
 from profiletool.image.region import Point
 
-_LEAST_PX = 16
+LEAST_PX = 16
 
 Box = tuple[float, float, float, float]  # x, y, width, height
 
@@ -43,10 +43,10 @@ def check_hint(hint: Hint, shape: tuple[int, int]) -> None:
     if hint.box is not None:
         x, y, w, h = hint.box
         inside = min(x, y) >= 0 and x + w <= width and y + h <= height
-        if not inside or min(w, h) < _LEAST_PX:
+        if not inside or min(w, h) < LEAST_PX:
             raise UsageError(
                 f"--box {x:g},{y:g},{w:g},{h:g} does not fit; give X,Y,W,H in pixels, at least "
-                f"{_LEAST_PX} wide and high and inside the {width} x {height} of the picture"
+                f"{LEAST_PX} wide and high and inside the {width} x {height} of the picture"
             )
     if hint.point is not None:
         x, y = hint.point

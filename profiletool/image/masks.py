@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 
 from profiletool.image.ground import BoolImage
+from profiletool.records import FloatArray
 
 _SPUR_SHARE = 0.006
 
@@ -59,6 +60,11 @@ def connected_to(seeds: BoolImage, mask: BoolImage) -> BoolImage:
 def overlap(one: BoolImage, other: BoolImage) -> float:
     """Area in common over the area of both together; 0 for two empty masks."""
     return float((one & other).sum() / max(int((one | other).sum()), 1))
+
+
+def thickness(contour: FloatArray) -> float:
+    """Give the shorter side of the smallest rectangle, at any angle, round points (N, 2)."""
+    return float(min(cv2.minAreaRect(contour.astype(np.float32))[1]))
 
 
 def edges_touched(mask: BoolImage) -> frozenset[str]:

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from profiletool.errors import NoScale
+from profiletool.errors import NoScale, UsageError
+from profiletool.image.masks import thickness
 from profiletool.image.parallax import (
     DISTANCE_SHARE,
     LARGEST_SHARE,
@@ -19,6 +20,7 @@ from profiletool.image.rectify import Rectified
 from profiletool.image.section import lying_section
 from profiletool.records import Scale, Silhouette
 
+_FAR_OFF = 2.0  # factor by which a measured distance may differ from what the sheet shows
 _EDGE_PX = 0.15  # by which blur and light move an edge as a whole, one standard deviation
 
 
@@ -52,7 +54,10 @@ class Measured:
 
 
 def measure(
-    made: Rectified, silhouette: Silhouette, camera_distance_mm: float | None = None
+    made: Rectified,
+    silhouette: Silhouette,
+    camera_distance_mm: float | None = None,
+    revolved: bool = True,
 ) -> Measured:
     """Give an object's outline and scale at the height of its axis.
 
@@ -60,12 +65,16 @@ def measure(
     ----------
     made : Rectified
     silhouette : Silhouette
-        Found in ``made.plain``.
+        Found in ``made.plain``; the axis of a body of revolution within 30 degrees of upright.
     camera_distance_mm : float or None
         From the lens to the sheet, where it was measured; else the picture tells it.
+    revolved : bool
+        Whether the object may be a body of revolution; if not, its outline stays as it is seen.
 
     Raises
     ------
+    UsageError
+        The sheet shows the camera somewhere else.
     NoScale
         The camera would have been inside the object.
     """
@@ -73,12 +82,13 @@ def measure(
     assert k is not None  # `rectify` always knows it
     camera = made.camera
     if camera_distance_mm is not None:
+        _check_distance(camera_distance_mm, camera.height_mm)
         camera = replace(camera, height_mm=camera_distance_mm, height_share=DISTANCE_SHARE)
     foot, high = np.array(camera.foot_px), camera.height_mm
     contour = silhouette.contour_px
     size = np.ptp(contour, axis=0)
-    section = lying_section(contour * k, np.append(foot * k, high))
-    t = axis_height(0.5 * float(size[0]) * k, high) if section is None else section.height_mm
+    section = lying_section(contour * k, np.append(foot * k, high)) if revolved else None
+    t = axis_height(0.5 * thickness(contour) * k, high) if section is None else section.height_mm
     if t > LARGEST_SHARE * high:
         raise NoScale(
             f"a camera {high:.0f} mm above the sheet is too near for an object so thick; "
@@ -100,3 +110,11 @@ def measure(
         measured_share=measured,
         shape_share=left.shape,
     )
+
+
+def _check_distance(given_mm: float, seen_mm: float) -> None:
+    if not seen_mm / _FAR_OFF < given_mm < seen_mm * _FAR_OFF:
+        raise UsageError(
+            f"--camera-distance is {given_mm:g} mm, but the sheet shows the camera about "
+            f"{seen_mm:.0f} mm above it; give millimetres from the lens to the sheet"
+        )

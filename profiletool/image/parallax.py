@@ -52,7 +52,7 @@ def axis_height(half_width_mm: float, distance_mm: float) -> float:
     For a sphere or a cylinder straight below the camera at ``distance_mm`` from the sheet.
     """
     ratio = half_width_mm / distance_mm
-    return half_width_mm * (math.sqrt(1.0 + ratio**2) - ratio)
+    return half_width_mm / (math.sqrt(1.0 + ratio**2) + ratio)
 
 
 def shrinkage(t_mm: float, distance_mm: float) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 
 from profiletool.errors import NoScale, UsageError
 from profiletool.image.marker import find_markers
+from profiletool.image.masks import thickness
 from profiletool.image.parallax import (
     LARGEST_SHARE,
     PRINT_SHARE,
@@ -24,6 +25,7 @@ _AGREEMENT = 0.02  # markers, and the sides of one, differ by less or are not tr
 _SQUARENESS = 0.1
 _CORNER_PX = 0.2  # scatter of a marker's corner
 _SCANNER_SHARE = 0.005
+_FAR_OFF = 4.0  # factor that unknown lenses and cropped pictures may make of a distance
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,7 @@ def scale_of(picture: Picture, silhouette: Silhouette, request: ScaleRequest) ->
     Raises
     ------
     UsageError
-        A length is not a positive number.
+        A length is not a positive number, or no camera's distance.
     NoScale
         Nothing is given or stored, or the marker is not found or not trusted.
     """
@@ -86,7 +88,8 @@ def scale_of(picture: Picture, silhouette: Silhouette, request: ScaleRequest) ->
     if request.mm_per_px is not None:
         return Scale(request.mm_per_px, "mm-per-px")
     if request.marker_mm is not None:
-        return _marker_scale(picture, width_px, request.marker_mm, request.camera_distance_mm)
+        thin_px = thickness(silhouette.contour_px)
+        return _marker_scale(picture, thin_px, request.marker_mm, request.camera_distance_mm)
     if picture.mm_per_px is not None:
         return Scale(picture.mm_per_px, "resolution", _SCANNER_SHARE)
     raise NoScale(
@@ -113,23 +116,40 @@ def check_scale(request: ScaleRequest) -> None:
             raise UsageError(f"{option} is {value:g}; give a positive number of millimetres")
 
 
+def marker_scale(picture: Picture, marker_mm: float) -> Scale:
+    """Give the scale in a marker's own plane, with what its print and corners may do.
+
+    Raises
+    ------
+    NoScale
+        It is not found or not trusted.
+    """
+    side_px, scatter = _marker_side_px(picture)
+    share = math.hypot(scatter, 2.0 * _CORNER_PX / side_px, 2.0 * PRINT_SHARE)
+    return Scale(marker_mm / side_px, "marker", share)
+
+
 def _marker_scale(
-    picture: Picture, width_px: float, marker_mm: float, distance_mm: float | None
+    picture: Picture, thin_px: float, marker_mm: float, distance_mm: float | None
 ) -> Scale:
     """Give a marker's scale, at the height of a lying body's axis where the distance is known.
 
     Without it the object may lie level with the marker or on its plane: its parallax is an error.
     """
-    side_px, scatter = _marker_side_px(picture)
-    k = marker_mm / side_px
-    corners = math.hypot(scatter, 2.0 * _CORNER_PX / side_px, 2.0 * PRINT_SHARE)
+    flat = marker_scale(picture, marker_mm)
+    k, corners = flat.mm_per_px, flat.error_share or 0.0
     focal_px = picture.focal_px or USUAL_FOCAL * max(picture.rgb.shape[:2])
     distance = distance_mm or focal_px * k
-    t = axis_height(0.5 * width_px * k, distance)
+    t = axis_height(0.5 * thin_px * k, distance)
     if t > LARGEST_SHARE * distance:
         raise NoScale(
             f"a camera {distance:.0f} mm away is too near for an object so thick; photograph it "
             "from farther off, or give --height or --width"
+        )
+    if not focal_px * k / _FAR_OFF < distance < focal_px * k * _FAR_OFF:
+        raise UsageError(
+            f"--camera-distance is {distance:g} mm, but the marker shows a camera some "
+            f"{focal_px * k:.0f} mm away; give millimetres from the lens to the marker"
         )
     left = remaining(t, Camera((0.0, 0.0), distance), 0.0, section=False)
     if distance_mm is None:

@@ -58,10 +58,12 @@ def lying_section(contour: FloatArray, camera: FloatArray) -> Section | None:
     -------
     Section or None
         Exact for bodies of revolution but for their unseen ends; None where the outline has
-        overhangs, as that of a mug with its handle: no body of revolution then.
+        overhangs, as that of a mug with its handle, or the section would be larger than what is
+        seen of it: no body of revolution then.
     """
     ring = _resampled(contour)
     axis = np.array([0.0, 1.0])
+    section = None
     for _ in range(_TURNS):
         section = _section(ring, camera, axis)
         if section is None:
@@ -70,6 +72,9 @@ def lying_section(contour: FloatArray, camera: FloatArray) -> Section | None:
         if abs(float(turned @ axis)) > 1.0 - 1e-7:
             break
         axis = turned
+    reach = (1.0 + _TOO_LARGE) * np.ptp(ring, axis=0)
+    if section is None or (np.ptp(section.points, axis=0) > reach).any():
+        return None
     return section
 
 

@@ -10,14 +10,14 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from profiletool.errors import NoObject, Unsure
+from profiletool.errors import NoObject, Unsure, UsageError
 from profiletool.image.candidates import BELIEVED, Candidate, find_candidates, judged, view_of
 from profiletool.image.choice import ranked, refuse_another
 from profiletool.image.contour import largest_region, outline, smoothed
 from profiletool.image.ground import BoolImage, FloatImage
-from profiletool.image.hint import Box, Hint, check_hint
+from profiletool.image.hint import LEAST_PX, Box, Hint, check_hint
 from profiletool.image.marker import paint_mask, with_quiet_zone
-from profiletool.image.masks import edges_touched, largest_filled, without_spurs
+from profiletool.image.masks import edges_touched, fill_holes, largest_filled, without_spurs
 from profiletool.image.matte import edge_field
 from profiletool.image.region import Point, choose_object
 from profiletool.records import FloatArray, Picture, Silhouette
@@ -27,6 +27,7 @@ _ROUGH_PIXELS = 400_000  # the object is told from the ground at no more than th
 _TRIM_PX = 2
 _BOX_MARGIN = 0.15  # of a box's size: so much round it tells what the ground looks like
 _SHOWN = 4
+_SOFT_PX, _STAIR_PX = 1.0, 0.5  # of a mask's staircase: what softens it, what it leaves
 _MATTE, _GIVEN = "alpha matte", "mask"
 
 
@@ -92,7 +93,7 @@ def _outlined(picture: Picture, polygons: list[FloatArray], hint: Hint) -> Silho
     """Find the outline where a box is all but the whole picture."""
     step = math.ceil(math.sqrt(picture.rgb[..., 0].size / _FINE_PIXELS))
     if hint.mask is not None:
-        found = _given(picture.rgb, hint.mask, step)
+        found = _given(picture.rgb, hint, step)
     elif picture.alpha is not None and _informative(picture.alpha):
         found = _Found(_alpha_field(picture.alpha, hint, step), _MATTE)
     else:
@@ -100,9 +101,14 @@ def _outlined(picture: Picture, polygons: list[FloatArray], hint: Hint) -> Silho
     mask = largest_region(found.field)
     if found.method not in (_MATTE, _GIVEN):
         mask = without_spurs(mask)
-    contour, noise = smoothed(outline(found.field, mask))
+    if found.method == _GIVEN:
+        # A mask's edge is a staircase: softened, its level line is straight again.
+        soft = np.asarray(cv2.GaussianBlur(found.field, (0, 0), _SOFT_PX), np.float32)
+        contour, noise = smoothed(outline(soft, mask), _STAIR_PX)
+    else:
+        contour, noise = smoothed(outline(found.field, mask))
     touches = edges_touched(mask)
-    if found.method == _MATTE and _trimmed(picture.alpha):
+    if found.method in (_MATTE, _GIVEN) and _trimmed(picture.alpha):
         touches = frozenset()
     if step > 1:
         contour = (contour + 0.5) * step - 0.5
@@ -113,9 +119,24 @@ def _outlined(picture: Picture, polygons: list[FloatArray], hint: Hint) -> Silho
 # --- the three ways -------------------------------------------------------------------------
 
 
-def _given(rgb: NDArray[np.uint8], mask: BoolImage, step: int) -> _Found:
-    """Take the user's mask as it is, its largest region, and measure how well it fits."""
-    whole = largest_filled(mask)
+def _given(rgb: NDArray[np.uint8], hint: Hint, step: int) -> _Found:
+    """Take one region of the user's mask as it is, and measure how well it fits the picture."""
+    mask = np.asarray(hint.mask, bool)
+    if hint.box is not None:
+        mask = mask & ~_outside(hint.box, mask.shape, 1.0)
+    if hint.point is not None:
+        x, y = (round(value) for value in hint.point)
+        if not fill_holes(mask)[y, x]:
+            raise UsageError("--point lies outside what --mask holds; give one of them")
+        whole = choose_object(mask, hint.point)
+    else:
+        whole = largest_filled(mask)
+    rows, columns = np.flatnonzero(whole.any(axis=1)), np.flatnonzero(whole.any(axis=0))
+    if min(len(rows), len(columns)) < LEAST_PX:
+        raise UsageError(
+            f"the mask holds nothing {LEAST_PX} pixels wide and high; paint the object white on "
+            "black"
+        )
     field = _reduced(whole.view(np.uint8) * 255, step).astype(np.float32) / np.float32(255)
     small = _reduced(rgb, max(1.0, math.sqrt(mask.size / _ROUGH_PIXELS)))
     shape = small.shape[:2]

@@ -53,7 +53,7 @@ def body_of(outline: FloatArray) -> shapely.Geometry:
         The outline encloses no area.
     """
     width = float(np.ptp(outline[:, 0]))
-    body = shapely.Polygon(outline).buffer(0.0).simplify(_COARSE_SHARE * width)
+    body = shapely.Polygon(outline).buffer(0.0).simplify(_COARSE_SHARE * width).buffer(0.0)
     if not body.area > 0.0:
         raise ValueError("an outline without area has no axis")
     shapely.prepare(body)
