@@ -58,6 +58,11 @@ class Picture:
     format: str
     focal_px: float | None = None
 
+    @property
+    def middle(self) -> FloatArray:
+        """Its middle in the picture frame, (2,) px."""
+        return np.asarray(0.5 * (np.array(self.rgb.shape[1::-1], float) - 1.0))
+
 
 @dataclass(frozen=True)
 class Silhouette:

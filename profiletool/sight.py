@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -10,17 +9,17 @@ from typing import Literal
 
 import numpy as np
 
-from profiletool.errors import NoObject, NoScale, Unsure, UsageError
-from profiletool.image.hint import LEAST_PX, Box, Hint, check_hint
+from profiletool.errors import NoObject
+from profiletool.image.hint import Box, Hint, check_hint
 from profiletool.image.load import load_mask, load_picture
 from profiletool.image.marker import find_markers
-from profiletool.image.measure import measure
 from profiletool.image.rectify import Rectified, edge_warnings, rectify
 from profiletool.image.region import Point
-from profiletool.image.scale import ScaleRequest, marker_scale, scale_of
+from profiletool.image.scale import ScaleRequest, scale_of
 from profiletool.image.silhouette import find_silhouette
+from profiletool.onsheet import find_on_sheet, measure_on_sheet, told, unsized
 from profiletool.profile.symmetry import LARGEST_MISMATCH, mirrored_mean, symmetry_of
-from profiletool.profile.upright import turned, upright_of
+from profiletool.profile.upright import turned, turned_px, upright_of, y_up
 from profiletool.records import FloatArray, Picture, Scale, Silhouette
 
 _MEAN_STEPS = 600  # of an outline's longer side, in which its two sides are averaged
@@ -95,8 +94,7 @@ def see(file: Path, asked: ScaleRequest, look: Look, say: Callable[[str], None])
     hint = _hint(look, picture)
     sheet = rectify(picture)
     if sheet is not None:
-        _check_said(asked)
-        say(_sheet_line(sheet))
+        say(told(sheet))
     silhouette = _found(picture, sheet, hint, asked)
     frontal = picture if sheet is None else sheet.picture
     notes = (
@@ -105,12 +103,12 @@ def see(file: Path, asked: ScaleRequest, look: Look, say: Callable[[str], None])
         else [*sheet.warnings, *edge_warnings(sheet, silhouette)]
     )
     scale = None
-    if sheet is not None and asked.height_mm is None and asked.width_mm is None:
-        silhouette, scale = _measured(sheet, silhouette, asked)
-    turn = turn_of(_y_up(silhouette.contour_px), look.rotate)
+    if sheet is not None and unsized(asked):
+        silhouette, scale = measure_on_sheet(sheet, silhouette, asked)
+    turn = turn_of(y_up(silhouette.contour_px), look.rotate)
     if look.rotate == "auto" and turn:
         say(f"turned upright by {turn:.1f} deg counter-clockwise; --rotate DEG turns it otherwise")
-    upright = _upright(silhouette, turn, _middle(frontal))
+    upright = _upright(silhouette, turn, frontal.middle)
     if look.symmetric:
         upright = _symmetric(upright)
     if scale is None:
@@ -119,53 +117,6 @@ def see(file: Path, asked: ScaleRequest, look: Look, say: Callable[[str], None])
         upright = replace(upright, mask=sheet.photo_mask_of(upright.mask))
     notes += _notes(upright, scale, look)
     return Seen(frontal, upright, scale, turn, tuple(notes))
-
-
-# --- on the printed sheet -------------------------------------------------------------------
-
-
-def _check_said(asked: ScaleRequest) -> None:
-    if asked.mm_per_px is not None:
-        raise UsageError(
-            "the picture shows a printed sheet, which tells its scale: leave --mm-per-px away, or "
-            "crop the sheet out"
-        )
-
-
-def _measured(
-    sheet: Rectified, silhouette: Silhouette, asked: ScaleRequest
-) -> tuple[Silhouette, Scale]:
-    """Measure an object whatever its way up: with its axis upright, then turned back.
-
-    A marker in the sheet's field sets the size of its print right.
-    """
-    distance_mm = asked.camera_distance_mm
-    middle = _middle(sheet.picture)
-    turn = upright_of(_y_up(silhouette.contour_px)).turn_deg
-    foot = _turned_px(np.array(sheet.camera.foot_px), turn, middle)
-    camera = replace(sheet.camera, foot_px=(float(foot[0]), float(foot[1])))
-    stands = replace(silhouette, contour_px=_turned_px(silhouette.contour_px, turn, middle))
-    turned_sheet = replace(sheet, camera=camera)
-    made = measure(turned_sheet, stands, distance_mm)
-    # A slanting view spoils the symmetry of what is seen, not that of a round body's section.
-    if made.round and upright_of(_y_up(made.silhouette.contour_px)).mismatch > LARGEST_MISMATCH:
-        made = measure(turned_sheet, stands, distance_mm, revolved=False)
-    contour = _turned_px(made.silhouette.contour_px, -turn, middle)
-    scale = made.scale
-    if asked.marker_mm is not None:
-        flat = marker_scale(sheet.picture, asked.marker_mm)
-        share = math.hypot(flat.error_share or 0.0, scale.error_share or 0.0)
-        size = flat.mm_per_px / (sheet.picture.mm_per_px or 1.0)
-        scale = Scale(size * scale.mm_per_px, "marker", share)
-    return replace(silhouette, contour_px=contour), scale
-
-
-def _sheet_line(sheet: Rectified) -> str:
-    return (
-        f"sheet: {sheet.board}, {sheet.corners_seen} of {sheet.corners_total} corners within "
-        f"{sheet.reprojection_px:.2f} px, camera {sheet.distance_mm:.0f} mm away at a slant of "
-        f"{sheet.tilt_deg:.0f} deg"
-    )
 
 
 # --- finding it -----------------------------------------------------------------------------
@@ -185,65 +136,10 @@ def _found(
     if sheet is None:
         markers = find_markers(picture) if asked.marker_mm is not None else []
         return find_silhouette(picture, markers, hint)
-    markers = find_markers(sheet.plain) if asked.marker_mm is not None else []
-    unsized = asked.height_mm is None and asked.width_mm is None
-    if asked.marker_mm is not None and not markers and unsized:
-        raise NoScale(
-            "no ArUco DICT_4X4_50 marker lies in the printed sheet's field; leave --marker-mm "
-            "away: the sheet tells the scale"
-        )
-    try:
-        return find_silhouette(sheet.plain, markers, _frontal_hint(hint, sheet))
-    except Unsure as unsure:
-        masks = [(sheet.photo_mask_of(mask), c, how) for mask, c, how in unsure.candidates]
-        raise Unsure(str(unsure), tuple(masks), picture.rgb) from None
-
-
-def _frontal_hint(hint: Hint, sheet: Rectified) -> Hint:
-    """Say where a hint for the photograph lies in the frontal view.
-
-    Raises
-    ------
-    UsageError
-        Outside the sheet.
-    """
-    size = np.array([sheet.frame.width, sheet.frame.height], float)
-    box, point = None, None
-    if hint.point is not None:
-        x, y = sheet.frontal_of(np.array(hint.point, float)).tolist()
-        if not (0.0 <= x < size[0] and 0.0 <= y < size[1]):
-            raise UsageError("--point lies outside the printed sheet; give a point on it")
-        point = x, y
-    if hint.box is not None:
-        left, top, w, h = hint.box
-        corners = np.array(
-            [[left, top], [left + w, top], [left + w, top + h], [left, top + h]], float
-        )
-        there = np.clip(sheet.frontal_of(corners), 0.0, size)
-        low, high = there.min(axis=0), there.max(axis=0)
-        if min(high - low) < LEAST_PX:
-            raise UsageError("--box lies outside the printed sheet; the object must lie on it")
-        box = (*low.tolist(), *(high - low).tolist())
-    mask = None if hint.mask is None else sheet.mask_of(hint.mask)
-    if mask is not None and not mask.any():
-        raise UsageError("the mask lies outside the printed sheet; the object must lie on it")
-    return Hint(box, point, mask)
+    return find_on_sheet(picture, sheet, hint, asked)
 
 
 # --- turning it -----------------------------------------------------------------------------
-
-
-def _middle(picture: Picture) -> FloatArray:
-    return 0.5 * (np.array(picture.rgb.shape[1::-1], float) - 1.0)
-
-
-def _y_up(px: FloatArray) -> FloatArray:
-    return px * [1.0, -1.0]
-
-
-def _turned_px(px: FloatArray, rotated_deg: float, middle: FloatArray) -> FloatArray:
-    """Turn points (..., 2) of a picture about its middle, counter-clockwise as seen."""
-    return _y_up(turned(_y_up(px - middle), rotated_deg)) + middle
 
 
 def turn_of(outline: FloatArray, rotate: float | Literal["auto"]) -> float:
@@ -274,7 +170,7 @@ def _upright(silhouette: Silhouette, rotated_deg: float, middle: FloatArray) -> 
         for edge, outward in _OUTWARD.items()
         if any(float(faced @ outward) > _FACES for faced in touched)
     )
-    contour = _turned_px(silhouette.contour_px, rotated_deg, middle)
+    contour = turned_px(silhouette.contour_px, rotated_deg, middle)
     return replace(silhouette, contour_px=contour, touches=touches)
 
 
@@ -315,8 +211,8 @@ def _symmetric(silhouette: Silhouette) -> Silhouette:
             f"the object runs out of the frame ({', '.join(cut)}), so --symmetric has no two "
             "sides to average"
         )
-    mean = averaged(_y_up(silhouette.contour_px), least_step=1.0)
-    return replace(silhouette, contour_px=_y_up(mean))
+    mean = averaged(y_up(silhouette.contour_px), least_step=1.0)
+    return replace(silhouette, contour_px=y_up(mean))
 
 
 # --- what to say ----------------------------------------------------------------------------
@@ -352,7 +248,7 @@ def _box_note(box: Box | None, silhouette: Silhouette) -> Iterator[str]:
 
 
 def _lean(silhouette: Silhouette) -> Iterator[str]:
-    outline = _y_up(silhouette.contour_px)
+    outline = y_up(silhouette.contour_px)
     found = upright_of(outline)
     if found.mismatch > 0.5 * LARGEST_MISMATCH or abs(found.turn_deg) < _LEANING_DEG:
         return

@@ -11,7 +11,7 @@ import pytest
 import shapely
 from PIL import Image
 
-from profiletool import sight
+from profiletool import onsheet, sight
 from profiletool.errors import NoObject, NoScale, Unsure, UsageError
 from profiletool.image.board import BOARDS
 from profiletool.image.rectify import Rectified, rectify
@@ -291,7 +291,7 @@ def test_a_slab_on_the_sheet_keeps_the_outline_that_is_seen(
     wedge = np.array([[300.0, 300.0], [600.0, 420.0], [330.0, 640.0]])
     mask = np.zeros((1, 1), bool)
     silhouette = Silhouette(wedge, mask, "plain ground", 0.05, frozenset())
-    seen, scale = sight._measured(sheet, silhouette, ScaleRequest())
+    seen, scale = onsheet.measure_on_sheet(sheet, silhouette, ScaleRequest())
     np.testing.assert_allclose(seen.contour_px, wedge, atol=1e-6)
     assert sheet.picture.mm_per_px is not None
     assert 0.8 * sheet.picture.mm_per_px < scale.mm_per_px < sheet.picture.mm_per_px
@@ -403,7 +403,7 @@ def test_doubt_on_the_sheet_shows_the_photograph(
         disc = np.hypot(x - spot[0], y - spot[1]) < 20.0
         raise Unsure("what is it", ((disc, 0.3, "a way"),), picture.rgb)
 
-    monkeypatch.setattr(sight, "find_silhouette", doubt)
+    monkeypatch.setattr(onsheet, "find_silhouette", doubt)
     with pytest.raises(Unsure) as caught:
         look_at(lying_file, ScaleRequest())
     ((mask, confidence, method),) = caught.value.candidates

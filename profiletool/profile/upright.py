@@ -76,6 +76,16 @@ def turned(points: FloatArray, turn_deg: float) -> FloatArray:
     return np.asarray(points @ np.array([[c, s], [-s, c]]))
 
 
+def y_up(px: FloatArray) -> FloatArray:
+    """Bring points (..., 2) from the picture frame, y down, to one with y up, or back."""
+    return px * [1.0, -1.0]
+
+
+def turned_px(px: FloatArray, turn_deg: float, middle: FloatArray) -> FloatArray:
+    """Turn points (..., 2) of a picture about its middle, counter-clockwise as seen."""
+    return y_up(turned(y_up(px - middle), turn_deg)) + middle
+
+
 def _mismatch(body: shapely.Geometry, turn_deg: float, aside: float) -> float:
     """Compare with the mirror image about the axis that a turn brings upright.
 
