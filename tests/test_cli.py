@@ -101,6 +101,7 @@ def test_json_on_stdout_is_the_file(samples: Path, tmp_path: Path) -> None:
     assert result.stderr == ""
 
 
+@pytest.mark.slow
 def test_left_and_right_of_a_symmetric_object_agree(tmp_path: Path) -> None:
     file = picture(tmp_path / "oval.png")
     designs = []
@@ -368,7 +369,7 @@ def test_shape_csv_holds_target_and_predicted_line(samples: Path, tmp_path: Path
     [
         ("500,100\n500,50\n500,0\n", ("--joints", "2"), 5),
         ("0,80\n0,0\n80,0\n", ("--from", "50", "--to", "50.01"), 5),
-        ("0,80\n-20,0\n0,-80\n", ("--joints", "300", "--method", "paper"), 6),
+        ("0,80\n-20,0\n0,-80\n", ("--joints", "120", "--method", "paper"), 6),
         ("0,20\n-5,0\n0,-20\n", ("--joints", "40"), 6),
         ("0,80\n-20,0\n0,-80\n", ("--out", "x" * 300), 1),
     ],
@@ -382,6 +383,7 @@ def test_odd_requests_end_in_one_line(
     error_of(result)
 
 
+@pytest.mark.slow
 def test_a_mirrored_drawing_on_the_other_side_is_the_same_design(
     samples: Path, tmp_path: Path
 ) -> None:
@@ -641,6 +643,7 @@ def test_verify_refuses(samples: Path, tmp_path: Path) -> None:
         assert "thick.json: a wall of 8 mm" in error_of(result)
 
 
+@pytest.mark.slow
 def test_verify_agrees_with_design(samples: Path, tmp_path: Path) -> None:
     made = json.loads(call("design", samples / REST, "--no-refine", "--json", "--quiet").stdout)
     assert made["verified"] is True
@@ -660,7 +663,7 @@ def test_verify_agrees_with_design(samples: Path, tmp_path: Path) -> None:
     ("failing", "says"),
     [(ending_early, "limit point"), (never_converging, "no equilibrium found")],
 )
-@pytest.mark.parametrize("method", ["paper", "optimal"])
+@pytest.mark.parametrize("method", [pytest.param("paper", marks=pytest.mark.slow), "optimal"])
 def test_exit_7_writes_the_design_marked_not_verified(
     failing: Callable[[pytest.MonkeyPatch], None],
     says: str,

@@ -260,7 +260,9 @@ def blurred(rgb: np.ndarray) -> np.ndarray:
     return compressed(cv2.GaussianBlur(rgb, (0, 0), 0.7))
 
 
-@pytest.mark.parametrize("treatment", [as_it_is, compressed, blurred])
+@pytest.mark.parametrize(
+    "treatment", [as_it_is, compressed, pytest.param(blurred, marks=pytest.mark.slow)]
+)
 def test_cut_outs_on_many_grounds(
     shared: Path, treatment: Callable[[np.ndarray], np.ndarray]
 ) -> None:
