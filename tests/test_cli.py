@@ -158,11 +158,15 @@ def test_exit_2_for_bad_usage(options: tuple[str, ...], tmp_path: Path) -> None:
 
 def test_exit_2_for_a_folder_that_is_there(tmp_path: Path) -> None:
     file = picture(tmp_path / "oval.png")
-    assert unverified(file, "--height", 90).exit_code == 0
+    old = tmp_path / "oval_design" / "design.json"
+    old.parent.mkdir()
+    old.write_text("an earlier one")
     again = unverified(file, "--height", 90)
     assert again.exit_code == 2
     assert "--force" in error_of(again)
+    assert old.read_text() == "an earlier one"
     assert unverified(file, "--height", 90, "--force").exit_code == 0
+    assert old.read_text() != "an earlier one"
 
 
 @pytest.mark.parametrize("name", ["absent.png", "text.png", "folder.png", "absent.svg", "bad.csv"])

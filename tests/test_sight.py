@@ -256,8 +256,14 @@ def sheet(lying: Picture) -> Rectified:
     return made
 
 
-def test_on_the_sheet_nothing_needs_to_be_said_of_size_and_way_up(lying_file: Path) -> None:
-    seen = look_at(lying_file, ScaleRequest(), rotate="auto")
+@pytest.fixture(scope="module")
+def stood(lying_file: Path) -> Seen:
+    """Nothing said but that it shall stand."""
+    return look_at(lying_file, ScaleRequest(), rotate="auto")
+
+
+def test_on_the_sheet_nothing_needs_to_be_said_of_size_and_way_up(stood: Seen) -> None:
+    seen = stood
     body = bulb()
     assert seen.scale.source == "sheet"
     share = seen.scale.measured_error
@@ -343,9 +349,9 @@ def test_a_marker_in_the_field_sets_the_sheets_size_right(lying: Picture, tmp_pa
         )
 
 
-def test_the_mask_is_the_photographs(lying_file: Path, lying: Picture) -> None:
+def test_the_mask_is_the_photographs(stood: Seen, lying: Picture) -> None:
     """The body is the one dark red thing in it."""
-    mask = look_at(lying_file, ScaleRequest(), rotate="auto").silhouette.mask
+    mask = stood.silhouette.mask
     red = lying.rgb[..., 0].astype(int) - lying.rgb[..., 2] > 45
     assert mask.shape == lying.rgb.shape[:2]
     assert (mask & red).sum() / (mask | red).sum() > 0.97
@@ -365,12 +371,11 @@ def test_photograph_and_frontal_view_are_brought_onto_each_other(sheet: Rectifie
 
 
 def test_hints_on_the_sheet_are_the_photographs(
-    lying_file: Path, lying: Picture, tmp_path: Path
+    lying_file: Path, lying: Picture, stood: Seen, tmp_path: Path
 ) -> None:
     red = lying.rgb[..., 0].astype(int) - lying.rgb[..., 2] > 45
     rows, columns = np.flatnonzero(red.any(axis=1)), np.flatnonzero(red.any(axis=0))
     Image.fromarray(red.astype(np.uint8) * 255).save(tmp_path / "mask.png")
-    free = look_at(lying_file, ScaleRequest(), rotate="auto")
     box = (columns[0] - 12.0, rows[0] - 12.0, np.ptp(columns) + 24.0, np.ptp(rows) + 24.0)
     for look in (
         {"point": (float(columns.mean()), float(rows.mean()))},
@@ -378,7 +383,7 @@ def test_hints_on_the_sheet_are_the_photographs(
         {"mask": tmp_path / "mask.png"},
     ):
         seen = look_at(lying_file, ScaleRequest(), rotate="auto", **look)
-        np.testing.assert_allclose(size_of(seen), size_of(free), rtol=0.015)
+        np.testing.assert_allclose(size_of(seen), size_of(stood), rtol=0.015)
         assert (seen.silhouette.method == "mask") is ("mask" in look)
     off = np.zeros_like(red)
     off[:20, :20] = True
