@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -18,6 +19,8 @@ from profiletool.profile.symmetry import LARGEST_MISMATCH
 from profiletool.profile.upright import turned_px, upright_of, y_up
 from profiletool.records import Picture, Scale, Silhouette
 
+_DISTANT = 0.1  # share by which a measured distance may be off what the sheet shows
+
 
 def told(sheet: Rectified) -> str:
     """Say how the sheet is seen."""
@@ -26,6 +29,18 @@ def told(sheet: Rectified) -> str:
         f"{sheet.reprojection_px:.2f} px, camera {sheet.distance_mm:.0f} mm away at a slant of "
         f"{sheet.tilt_deg:.0f} deg"
     )
+
+
+def distance_note(sheet: Rectified, asked: ScaleRequest) -> Iterator[str]:
+    """Say where a measured distance is not what the sheet shows."""
+    given, seen = asked.camera_distance_mm, sheet.camera
+    if given is None or not unsized(asked):
+        return
+    if abs(given / seen.height_mm - 1.0) > max(_DISTANT, 3.0 * seen.height_share):
+        yield (
+            f"--camera-distance is {given:g} mm, which was used; the sheet shows the camera about "
+            f"{seen.height_mm:.0f} mm above it"
+        )
 
 
 def unsized(asked: ScaleRequest) -> bool:

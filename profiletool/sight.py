@@ -17,7 +17,7 @@ from profiletool.image.rectify import Rectified, edge_warnings, rectify
 from profiletool.image.region import Point
 from profiletool.image.scale import ScaleRequest, scale_of
 from profiletool.image.silhouette import find_silhouette
-from profiletool.onsheet import find_on_sheet, measure_on_sheet, told, unsized
+from profiletool.onsheet import distance_note, find_on_sheet, measure_on_sheet, told, unsized
 from profiletool.profile.symmetry import LARGEST_MISMATCH, mirrored_mean, symmetry_of
 from profiletool.profile.upright import turned, turned_px, upright_of, y_up
 from profiletool.records import FloatArray, Picture, Scale, Silhouette
@@ -100,7 +100,7 @@ def see(file: Path, asked: ScaleRequest, look: Look, say: Callable[[str], None])
     notes = (
         [*_box_note(look.box, silhouette)]
         if sheet is None
-        else [*sheet.warnings, *edge_warnings(sheet, silhouette)]
+        else [*sheet.warnings, *edge_warnings(sheet, silhouette), *distance_note(sheet, asked)]
     )
     scale = None
     if sheet is not None and unsized(asked):

@@ -311,6 +311,19 @@ def test_a_camera_somewhere_else_than_the_sheet_shows_is_refused(
         look_at(lying_file, ScaleRequest(camera_distance_mm=distance))
 
 
+@pytest.mark.parametrize(("factor", "told"), [(1.03, False), (1.4, True), (0.7, True)])
+def test_a_distance_that_the_sheet_does_not_show_is_told(
+    sheet: Rectified, factor: float, told: bool
+) -> None:
+    distance = factor * sheet.camera.height_mm
+    said = list(onsheet.distance_note(sheet, ScaleRequest(camera_distance_mm=distance)))
+    known = replace(sheet, camera=replace(sheet.camera, height_share=0.02))
+    surely = list(onsheet.distance_note(known, ScaleRequest(camera_distance_mm=distance)))
+    assert bool(surely) is told
+    assert len(said) <= len(surely)  # a file without a focal length leaves more open
+    assert not list(onsheet.distance_note(known, ScaleRequest(height_mm=60.0)))
+
+
 def test_what_the_sheet_tells_is_not_given_another_way(lying_file: Path) -> None:
     with pytest.raises(UsageError, match="leave --mm-per-px away"):
         look_at(lying_file, ScaleRequest(mm_per_px=0.2))
