@@ -400,11 +400,13 @@ def test_a_mirrored_drawing_on_the_other_side_is_the_same_design(
     assert right["base_pose"]["x_mm"] == -left["base_pose"]["x_mm"]
 
 
+@pytest.mark.slow
 def test_scale_options_on_a_drawing_are_not_silent(samples: Path) -> None:
     design = json.loads(unverified(samples / REST, "--height", 50, "--json").stdout)
     assert any("scale options were not used" in warning for warning in design["warnings"])
 
 
+@pytest.mark.slow
 def test_the_fit_is_on_the_screen(samples: Path) -> None:
     for method, by in (("paper", ["formula"]), ("optimal", ["formula", "joint response"])):
         shown = unverified(samples / REST, "--method", method, "--force").stdout
@@ -693,6 +695,7 @@ def test_exit_7_writes_the_design_marked_not_verified(
     assert "FE deg" not in result.stdout
 
 
+@pytest.mark.slow
 def test_exit_7_where_no_choice_of_joints_stands(
     samples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

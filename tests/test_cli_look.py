@@ -22,6 +22,7 @@ def in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.chdir(tmp_path)
 
 
+@pytest.mark.slow
 def test_doubt_leaves_the_candidates_picture_and_no_folder(shared: Path, tmp_path: Path) -> None:
     photo = shared / "photos" / "pear_in_hand.jpg"
     result = unverified(photo, "--height", 90)
@@ -95,6 +96,7 @@ def test_what_was_asked_for_is_in_the_design_and_the_report(tmp_path: Path) -> N
     assert "the mean of both" in report
 
 
+@pytest.mark.slow
 def test_verify_finds_the_target_of_a_turned_drawing(tmp_path: Path) -> None:
     """An open line keeps its length however it is turned: only its place tells."""
     file = csv(tmp_path / "a.csv", PEAR[330:870])

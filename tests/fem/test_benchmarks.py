@@ -164,6 +164,7 @@ def limit(values: list[tuple[float, float]]) -> tuple[float, float]:
     return float(corner), float(middle)
 
 
+@pytest.mark.slow
 def test_cook_converges_with_the_mean_dilatation() -> None:
     # 1.7 % low at 16 x 16, 0.7 % at 32 x 32.
     found = [cook("hex8", n, mean_dilatation=True) for n in (4, 8, 16)]

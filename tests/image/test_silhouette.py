@@ -261,7 +261,8 @@ def blurred(rgb: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    "treatment", [as_it_is, compressed, pytest.param(blurred, marks=pytest.mark.slow)]
+    "treatment",
+    [as_it_is, *(pytest.param(one, marks=pytest.mark.slow) for one in (compressed, blurred))],
 )
 def test_cut_outs_on_many_grounds(
     shared: Path, treatment: Callable[[np.ndarray], np.ndarray]
