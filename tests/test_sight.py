@@ -190,6 +190,8 @@ def test_a_mask_is_narrowed_by_point_and_box(tmp_path: Path) -> None:
         np.testing.assert_allclose(np.ptp(seen.silhouette.contour_px, axis=0), [110, 160], atol=2)
     with pytest.raises(UsageError, match="outside what --mask holds"):
         look_at(file, mask=tmp_path / "mask.png", point=(220.0, 20.0))
+    with pytest.raises(UsageError, match="outside what --mask holds"):
+        look_at(file, mask=tmp_path / "mask.png", point=(479.9, 399.9))  # in the last pixel
 
 
 def test_masks_that_show_nothing(tmp_path: Path) -> None:

@@ -77,10 +77,14 @@ def choose_object(mask: BoolImage, point: Point | None = None) -> BoolImage:
     return np.asarray(labels == max(regions, key=merit))
 
 
+def pixel_at(point: Point, shape: tuple[int, ...]) -> tuple[int, int]:
+    """Row and column of the pixel that holds a point of a picture (H, W)."""
+    return min(round(point[1]), shape[0] - 1), min(round(point[0]), shape[1] - 1)
+
+
 def _region_at(filled: BoolImage, point: Point) -> BoolImage:
     seed = np.zeros(filled.shape, bool)
-    height, width = filled.shape
-    seed[min(round(point[1]), height - 1), min(round(point[0]), width - 1)] = True
+    seed[pixel_at(point, filled.shape)] = True
     region = connected_to(seed, filled)
     if region.sum() < 16:
         raise NoObject("no object at the point that was given; give a point well inside it")

@@ -19,7 +19,7 @@ from profiletool.image.hint import LEAST_PX, Box, Hint, check_hint
 from profiletool.image.marker import paint_mask, with_quiet_zone
 from profiletool.image.masks import edges_touched, fill_holes, largest_filled, without_spurs
 from profiletool.image.matte import edge_field
-from profiletool.image.region import Point, choose_object
+from profiletool.image.region import Point, choose_object, pixel_at
 from profiletool.records import FloatArray, Picture, Silhouette
 
 _FINE_PIXELS = 6_000_000  # the contour is taken at no more than this
@@ -125,8 +125,7 @@ def _given(rgb: NDArray[np.uint8], hint: Hint, step: int) -> _Found:
     if hint.box is not None:
         mask = mask & ~_outside(hint.box, mask.shape, 1.0)
     if hint.point is not None:
-        x, y = (round(value) for value in hint.point)
-        if not fill_holes(mask)[y, x]:
+        if not fill_holes(mask)[pixel_at(hint.point, mask.shape)]:
             raise UsageError("--point lies outside what --mask holds; give one of them")
         whole = choose_object(mask, hint.point)
     else:
