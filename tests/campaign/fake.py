@@ -17,7 +17,15 @@ from profiletool.campaign.workers import run_all
 from tests.campaign.processes import until
 
 CALLS, SECONDS = "TEST_CALLS", "TEST_SECONDS"
+HELD_AFTER = "TEST_HELD_AFTER"  # a run that begins when so many have ended waits for let_go()
 DEADLY_ONCE, DEADLY, BUGGY = 301.0, 302.0, 303.0  # alpha of tasks that go wrong
+
+_GO = "go"
+
+
+def let_go(folder: Path) -> None:
+    """Let runs that are held go on."""
+    Path(folder, _GO).touch()
 
 
 def task(number: int, alpha: float = 90.0) -> Task:
@@ -38,6 +46,8 @@ def run(task: Task) -> Outcome:
     mark.touch()
     if task.alpha_deg == BUGGY:
         raise ZeroDivisionError("a bug")
+    if len(calls(mark.parent, suffix=".ended")) >= float(os.environ.get(HELD_AFTER, "inf")):
+        until(Path(mark.parent, _GO).exists)
     time.sleep(float(os.environ.get(SECONDS, "0.02")))
     first = len(calls(mark.parent, task)) == 1
     if task.alpha_deg == DEADLY_ONCE and first:

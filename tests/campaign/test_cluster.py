@@ -106,7 +106,8 @@ def worker(start: Start, scheduler: str, **variables: str) -> subprocess.Popen[b
 def test_a_worker_that_is_killed_loses_its_own_run_only(
     scheduler: str, start: Start, calls: Path, tmp_path: Path
 ) -> None:
-    workers = [worker(start, scheduler) for _ in range(2)]
+    # Some runs end, then none until a worker is killed, however late this process sees it.
+    workers = [worker(start, scheduler, **{fake.HELD_AFTER: "3"}) for _ in range(2)]
     killed: list[int] = []
     kept: list[Task] = []
     store = Store(tmp_path / "store")
@@ -124,6 +125,7 @@ def test_a_worker_that_is_killed_loses_its_own_run_only(
         if done >= 2 and not killed:
             until(under_way)
             os.kill(killed[0], signal.SIGKILL)
+            fake.let_go(calls)
 
     found = run_all(TASKS, store, workers=1, scheduler=scheduler, progress=kill, run=fake.run)
     assert killed[0] in {process.pid for process in workers}
@@ -180,7 +182,7 @@ def test_a_worker_without_what_it_takes_says_so_and_lives_on(
 
 def test_a_scheduler_that_goes_away(start: Start, calls: Path, tmp_path: Path) -> None:
     scheduler, address = start_scheduler(start)
-    worker(start, address)
+    worker(start, address, **{fake.HELD_AFTER: "2"})  # some are always left to lose
     store = Store(tmp_path / "store")
 
     def kill(done: int, _: int) -> None:
