@@ -83,6 +83,8 @@ class Silhouette:
         The edges of the frame that the object runs into.
     confidence : float
         How far the mask deserves to be believed, 0 to 1; a matte is believed wholly.
+    held : bool
+        Whether a hand seems to hide part of the object.
     """
 
     contour_px: FloatArray
@@ -91,6 +93,7 @@ class Silhouette:
     noise_px: float
     touches: frozenset[str]
     confidence: float = 1.0
+    held: bool = False
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from profiletool.image.candidates import BELIEVED, Candidate, find_candidates, j
 from profiletool.image.choice import ranked, refuse_another
 from profiletool.image.contour import largest_region, outline, smoothed
 from profiletool.image.ground import BoolImage, FloatImage
+from profiletool.image.hand import is_held
 from profiletool.image.hint import LEAST_PX, Box, Hint, check_hint
 from profiletool.image.marker import paint_mask, with_quiet_zone
 from profiletool.image.masks import edges_touched, fill_holes, largest_filled, without_spurs
@@ -56,7 +57,7 @@ def find_silhouette(
     NoObject
         Nothing found, several objects alike, or one that covers the whole picture.
     Unsure
-        Nothing found for certain; it carries the candidates.
+        Nothing found for certain, or a hand holds it; it carries the candidates.
     UsageError
         The hint does not fit the picture.
     """
@@ -82,11 +83,12 @@ def find_silhouette(
 
 @dataclass(frozen=True)
 class _Found:
-    """Share of object in every pixel, (H, W), what found it and how far it is believed."""
+    """Share of object in every pixel, (H, W), what found it, how far it is believed, and held."""
 
     field: FloatImage
     method: str
     confidence: float = 1.0
+    held: bool = False
 
 
 def _outlined(picture: Picture, polygons: list[FloatArray], hint: Hint) -> Silhouette:
@@ -113,7 +115,9 @@ def _outlined(picture: Picture, polygons: list[FloatArray], hint: Hint) -> Silho
     if step > 1:
         contour = (contour + 0.5) * step - 0.5
         mask = _resized(mask, picture.rgb.shape[:2])
-    return Silhouette(contour, mask, found.method, noise * step, touches, found.confidence)
+    return Silhouette(
+        contour, mask, found.method, noise * step, touches, found.confidence, found.held
+    )
 
 
 # --- the three ways -------------------------------------------------------------------------
@@ -192,25 +196,33 @@ def _searched(
     view = view_of(small, ignored, outside, point)
     found = ranked(find_candidates(view), pointed=point is not None)
     best = found[0]
+    held = is_held(view, best.mask)
+    if held and hint.box is None and hint.point is None:
+        raise _unsure(
+            found,
+            rgb,
+            "a hand seems to hide part of the object; lay it down, or say with --box, --point or "
+            "--mask what to take",
+        )
     if best.confidence < BELIEVED:
-        raise _unsure(found, rgb)
+        raise _unsure(
+            found,
+            rgb,
+            "the object cannot be told from the ground for certain "
+            f"({100 * best.confidence:.0f} %); say where it is with --box, --point or --mask, or "
+            "photograph it on a plain ground of another colour",
+        )
     if point is None:
         refuse_another(best, found)
     field = edge_field(fine, best.mask, small)
     if hint.box is not None:
         field[_outside(hint.box, field.shape, fine_step)] = 0.0
-    return _Found(field, best.method, best.confidence)
+    return _Found(field, best.method, best.confidence, held)
 
 
-def _unsure(found: list[Candidate], rgb: NDArray[np.uint8]) -> Unsure:
+def _unsure(found: list[Candidate], rgb: NDArray[np.uint8], why: str) -> Unsure:
     shown = tuple((_resized(c.mask, rgb.shape[:2]), c.confidence, c.method) for c in found[:_SHOWN])
-    return Unsure(
-        f"the object cannot be told from the ground for certain ({100 * shown[0][1]:.0f} %); say "
-        "where it is with --box, --point or --mask, or photograph it on a plain ground of "
-        "another colour",
-        shown,
-        rgb,
-    )
+    return Unsure(why, shown, rgb)
 
 
 # --- boxes, points and sizes ----------------------------------------------------------------

@@ -1,0 +1,114 @@
+"""Objects that a hand holds, drawn."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+import pytest
+
+from profiletool.errors import Unsure
+from profiletool.image.candidates import view_of
+from profiletool.image.hand import is_held
+from profiletool.image.hint import Hint
+from profiletool.image.silhouette import find_silhouette
+from profiletool.records import Picture, Silhouette
+
+SHAPE = HEIGHT, WIDTH = 300, 400
+PALE, TAN, DARK = (236, 192, 170), (205, 150, 120), (96, 62, 46)
+GREY, BLUE, WOOD = (150, 152, 150), (60, 90, 170), (178, 132, 86)
+FREE = (140.0, 60.0, 120.0, 110.0)  # a box round what no finger covers
+EGG = np.pi * 50.5 * 80.5  # pixels
+
+
+class Scene:
+    """A blue egg on a ground, and what is drawn over it."""
+
+    def __init__(self, ground: tuple[int, ...] = GREY, colour: tuple[int, ...] = BLUE) -> None:
+        self.rgb = np.ones((*SHAPE, 3)) * np.array(ground)
+        cv2.ellipse(self.rgb, (200, 150), (50, 80), 0, 0, 360, colour, -1, cv2.LINE_AA)
+
+    def arm(self, colour: tuple[int, ...], up_to: int = 215, wide: int = 50) -> Scene:
+        cv2.line(self.rgb, (230, HEIGHT), (205, up_to), colour, wide, cv2.LINE_AA)
+        return self
+
+    def fingers(self, colour: tuple[int, ...]) -> Scene:
+        for y in (180, 200):
+            cv2.line(self.rgb, (150, y), (215, y), colour, 16, cv2.LINE_AA)
+        return self
+
+    def picture(self) -> Picture:
+        blurred = cv2.GaussianBlur(self.rgb, (0, 0), 0.8)
+        noise = np.random.default_rng(1).normal(0, 2, blurred.shape)
+        rgb = np.clip(np.round(blurred + noise), 0, 255).astype(np.uint8)
+        return Picture(rgb, None, None, "PNG")
+
+
+def found(scene: Scene, hint: Hint | None = None) -> Silhouette:
+    return find_silhouette(scene.picture(), hint=hint)
+
+
+@pytest.mark.parametrize("tone", [PALE, TAN, DARK])
+@pytest.mark.parametrize("ground", [GREY, (245, 244, 240), (60, 100, 80)])
+def test_a_held_object_is_refused(tone: tuple[int, ...], ground: tuple[int, ...]) -> None:
+    with pytest.raises(Unsure, match="a hand seems to hide part") as refused:
+        found(Scene(ground).arm(tone).fingers(tone))
+    assert refused.value.candidates
+
+
+def test_without_the_hand_it_is_found() -> None:
+    assert found(Scene()).mask.sum() == pytest.approx(EGG, rel=0.005)
+
+
+def test_a_hand_in_a_sleeve() -> None:
+    held = Scene().arm((30, 40, 30), up_to=285, wide=60)
+    cv2.circle(held.rgb, (212, 240), 32, TAN, -1)
+    with pytest.raises(Unsure, match="a hand"):
+        found(held)
+
+
+def test_a_box_round_what_is_free() -> None:
+    silhouette = found(Scene().arm(TAN).fingers(TAN), Hint(box=FREE))
+    assert not silhouette.held
+    assert silhouette.mask.sum() == pytest.approx(8650, rel=0.05)
+    assert not silhouette.mask[170:].any()
+
+
+@pytest.mark.parametrize(
+    "hint", [Hint(box=(130.0, 60.0, 140.0, 180.0)), Hint(point=(200.0, 120.0))]
+)
+def test_with_a_hint_it_is_told(hint: Hint) -> None:
+    assert found(Scene().arm(TAN).fingers(TAN), hint).held
+    assert not found(Scene(), hint).held
+
+
+def test_a_mask_is_taken_at_its_word() -> None:
+    whole = Scene().picture().rgb[..., 2] > 160
+    assert found(Scene().arm(TAN).fingers(TAN), Hint(mask=whole)).method == "mask"
+
+
+@pytest.mark.parametrize("ground", [GREY, WOOD])
+def test_an_object_with_the_colour_of_skin_is_no_hand(ground: tuple[int, ...]) -> None:
+    assert found(Scene(ground, TAN)).confidence > 0.5
+
+
+def test_one_that_leaves_the_picture_may_be_pointed_at() -> None:
+    """A wooden handle and a forearm look alike."""
+    handle = Scene(GREY, TAN).arm(TAN)
+    with pytest.raises(Unsure, match="say with --box, --point"):
+        found(handle)
+    assert found(handle, Hint(point=(200.0, 120.0))).touches == {"bottom"}
+
+
+def test_a_hand_that_hides_nothing() -> None:
+    beside = Scene()
+    cv2.line(beside.rgb, (400, 250), (320, 200), TAN, 30, cv2.LINE_AA)
+    assert found(beside).mask.sum() == pytest.approx(EGG, rel=0.005)
+
+
+def test_a_table_of_wood_is_no_hand() -> None:
+    """Its colour comes in over three sides."""
+    scene = Scene()
+    scene.rgb[225:] = WOOD
+    picture = scene.picture()
+    egg = picture.rgb[..., 2] > 160
+    assert not is_held(view_of(picture.rgb, np.zeros(SHAPE, bool)), egg)
