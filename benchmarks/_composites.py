@@ -34,16 +34,69 @@ class Composite:
     truth: NDArray[np.bool_]
 
 
-def composite(name: str, ground: str, seed: int = 0, photos: Path = PHOTOS) -> Composite:
-    """Lay a cut-out on a ground; the same arguments give the same picture."""
+def composite(
+    name: str,
+    ground: str,
+    seed: int = 0,
+    photos: Path = PHOTOS,
+    skin: tuple[float, float, float] | None = None,
+) -> Composite:
+    """Lay a cut-out on a ground, or hold it before it; the same arguments give the same picture.
+
+    Parameters
+    ----------
+    name, ground : str
+        One of `CUT_OUTS` and one of `GROUNDS`.
+    seed : int
+    photos : Path
+        Where the cut-outs are.
+    skin : (r, g, b), optional
+        Colour of the hand that holds it.
+    """
     rng = np.random.default_rng([seed, zlib.crc32(f"{name} on {ground}".encode())])
     colour, cover = _placed(_cut_out(photos / f"{name}_alpha.png"), rng)
     mean = colour[cover > 0.5].mean(axis=0)
-    below = _shaded(GROUNDS[ground](rng, mean), cover, rng)
-    soft = cv2.GaussianBlur(cover, (0, 0), 0.6)[..., None]
-    seen = below * (1 - soft) + colour * soft
+    seen = _shaded(GROUNDS[ground](rng, mean), cover, rng)
+    layers = [(colour, cover)]
+    if skin is not None:
+        behind, before = (_lit(part, skin, rng) for part in _hand(cover > 0.5))
+        layers = [behind, *layers, before]
+    for paint, part in layers:
+        soft = cv2.GaussianBlur(part, (0, 0), 0.6)[..., None]
+        seen = seen * (1 - soft) + paint * soft
     truth = fill_holes(cover >= 0.5)
     return Composite(Picture(_photographed(seen, rng), None, None, "JPEG"), truth)
+
+
+def _hand(cover: NDArray[np.bool_]) -> tuple[FloatImage, FloatImage]:
+    """Palm and forearm behind an object, and fingers round its lower end, (H, W) each."""
+    rows, columns = np.flatnonzero(cover.any(axis=1)), np.flatnonzero(cover.any(axis=0))
+    base, high = int(rows[-1]), int(rows[-1] - rows[0])
+    middle, wide = int(columns[0] + columns[-1]) // 2, int(columns[-1] - columns[0])
+    grip = base - round(0.22 * high)
+    behind, before = np.zeros(cover.shape), np.zeros(cover.shape)
+
+    def stroke(image: FloatImage, start: tuple[int, int], end: tuple[int, int], size: int) -> None:
+        cv2.line(image, start, end, 1.0, size, cv2.LINE_AA)
+
+    stroke(behind, (middle + 90, cover.shape[0] + 20), (middle + 15, base + 5), 70)
+    palm = round(0.5 * wide) + 18, 48
+    cv2.ellipse(behind, (middle, grip + 25), palm, 0, 0, 360, 1.0, -1, cv2.LINE_AA)
+    here = np.flatnonzero(cover[grip])
+    left, right = int(here[0]), int(here[-1])
+    for row in (grip + 4, grip + 25, grip + 46):
+        stroke(before, (left - 16, row + 10), (left + round(0.38 * (right - left)), row), 19)
+    stroke(before, (right + 16, grip + 30), (right - round(0.3 * (right - left)), grip + 2), 23)
+    return behind, before
+
+
+def _lit(
+    part: FloatImage, skin: tuple[float, float, float], rng: np.random.Generator
+) -> tuple[FloatImage, FloatImage]:
+    """Paint a part of a hand, darker towards its rim."""
+    depth = cv2.distanceTransform((part > 0.5).astype(np.uint8), cv2.DIST_L2, 5)
+    shade = 0.75 + 0.3 * np.clip(depth / 12.0, 0.0, 1.0)
+    return np.asarray(np.array(skin) * shade[..., None] + 3 * _grain(rng, 2)), part
 
 
 def _cut_out(path: Path) -> NDArray[np.uint8]:

@@ -2,7 +2,8 @@
 
 Cut-outs of ../shared/photos are laid on grounds that are drawn, and photographed: shadow, uneven
 light, blur, noise, JPEG. A refusal is counted apart; "right" means an overlap (IoU) of at least
-0.95 with the true mask. The last table tells what a confidence is worth.
+0.95 with the true mask. The second table tells what a confidence is worth; with --held, a last
+one tells what becomes of objects in a hand, which are to be refused.
 """
 
 from __future__ import annotations
@@ -23,6 +24,10 @@ from profiletool.image.silhouette import find_silhouette
 from profiletool.records import Picture
 
 _RIGHT, _GOOD, _WRONG = 0.95, 0.97, 0.9
+_SKINS = {
+    "pale": (236.0, 192.0, 170.0), "tan": (205.0, 150.0, 120.0), "brown": (150.0, 100.0, 72.0),
+    "dark": (96.0, 62.0, 46.0),
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -109,12 +114,28 @@ def _area_under(made: Sequence[Outcome]) -> float:
     return float((right[:, None] > other).mean() + 0.5 * (right[:, None] == other).mean())
 
 
+def held(grounds: Sequence[str]) -> str:
+    """Say how many objects in a hand are refused, and how many others are wrong."""
+    rows = []
+    for skin, colour in _SKINS.items():
+        made = []
+        for ground in grounds:
+            for name in CUT_OUTS:
+                shown = composite(name, ground, skin=colour)
+                made.append(outcome(name, ground, shown.picture, shown.truth))
+        kept = [one for one in made if not one.refused]
+        wrong = [f"{one.name} on {one.ground}" for one in kept if one.iou < _RIGHT]
+        rows.append((skin, str(len(made)), str(len(made) - len(kept)), ", ".join(wrong) or "none"))
+    return table(("hand", "pictures", "refused", "wrong"), rows)
+
+
 def main() -> None:
     """Go through the pictures and print the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=1, help="pictures of each cut-out and ground")
     parser.add_argument("--ground", action="append", choices=list(GROUNDS))
     parser.add_argument("--list", action="store_true", help="every picture that is off or refused")
+    parser.add_argument("--held", action="store_true", help="objects in a hand too")
     arguments = parser.parse_args()
     print(machine(), flush=True)
     grounds = arguments.ground or list(GROUNDS)
@@ -128,6 +149,8 @@ def main() -> None:
             if one.refused or one.iou < _RIGHT:
                 print(f"{one.name} on {one.ground}: {'refused, ' if one.refused else ''}"
                       f"{one.iou:.3f} ({one.confidence:.2f}, {one.method})")  # fmt: skip
+    if arguments.held:
+        print("", held(grounds), "", sep="\n")
     truth = load_picture(PHOTOS / "bulb_mask.png").rgb[..., 0] > 127
     for ground in ("white", "grey"):
         one = outcome("bulb", ground, load_picture(PHOTOS / f"bulb_on_{ground}.jpg"), truth)

@@ -7,7 +7,7 @@ import numpy as np
 
 from profiletool.image.candidates import View
 from profiletool.image.colours import COUNT
-from profiletool.image.ground import BoolImage
+from profiletool.image.ground import BoolImage, frame_of
 from profiletool.image.masks import connected_to
 
 # Skin of every tone has much the same hue (Xiao et al., Skin Res. Technol. 23 (2017) 21); in CIE
@@ -15,7 +15,8 @@ from profiletool.image.masks import connected_to
 _SKIN = (12.0, 4.0, 4.0), (92.0, 27.0, 36.0)
 _STRIP_SHARE = 0.04  # width of the strips along the frame, of its shorter side
 _COMMON = 0.01  # a colour of so much of two strips is the ground's
-_SPECK_PX, _NEAR_PX = 5, 7
+_GAP_PX, _NEAR_PX = 5, 7
+_FINGER_SHARE = 0.02  # of the shorter side: no finger is thinner
 _HIDDEN = 0.05  # more of an outline than this lies along the hand
 _SLEEVE, _BEYOND = 0.03, 0.1  # more of a mask than this comes before the hand, and after it
 
@@ -27,7 +28,7 @@ def is_held(view: View, mask: BoolImage) -> bool:
     itself, or in a sleeve that the mask then holds too.
     """
     skin = _skin(view)
-    hand = connected_to(_rim(skin.shape), skin) & ~view.barred
+    hand = connected_to(frame_of(skin.shape, 0.0), skin) & ~view.barred
     outline = mask & ~_morphed(cv2.MORPH_ERODE, mask, 3)
     along = outline & _morphed(cv2.MORPH_DILATE, hand, _NEAR_PX)
     return bool(along.sum() > _HIDDEN * outline.sum()) or _sleeved(skin, mask)
@@ -36,7 +37,7 @@ def is_held(view: View, mask: BoolImage) -> bool:
 def _sleeved(skin: BoolImage, mask: BoolImage) -> bool:
     """Whether skin parts the most of a mask from what it shows along the frame."""
     rest = mask & ~skin
-    sleeve = connected_to(_rim(mask.shape), rest)
+    sleeve = connected_to(frame_of(mask.shape, 0.0), rest)
     beyond = rest & ~sleeve
     area = mask.sum()
     return bool(sleeve.sum() > _SLEEVE * area and beyond.sum() > _BEYOND * area)
@@ -51,14 +52,8 @@ def _skin(view: View) -> BoolImage:
     common = [np.bincount(s.ravel(), minlength=COUNT) > _COMMON * s.size for s in strips]
     # An arm comes in over one side, the ground is along all of them.
     ground = np.sum(common, axis=0) > 1
-    closed = _morphed(cv2.MORPH_CLOSE, coloured & ~ground[cell], _SPECK_PX)
-    return _morphed(cv2.MORPH_OPEN, closed, _SPECK_PX)
-
-
-def _rim(shape: tuple[int, ...]) -> BoolImage:
-    rim = np.ones(shape, bool)
-    rim[1:-1, 1:-1] = False
-    return rim
+    closed = _morphed(cv2.MORPH_CLOSE, coloured & ~ground[cell], _GAP_PX)
+    return _morphed(cv2.MORPH_OPEN, closed, round(_FINGER_SHARE * min(closed.shape)) | 1)
 
 
 def _morphed(how: int, mask: BoolImage, size: int) -> BoolImage:
