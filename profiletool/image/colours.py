@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from profiletool.image.ground import BoolImage, FloatImage
 
 _BINS = 16
-COUNT = _BINS**3  # of cells
 _LOW = np.array([0.0, -80.0, -80.0], np.float32)
 _WIDTH = np.array([100.0, 160.0, 160.0], np.float32) / _BINS
 
@@ -23,7 +22,7 @@ def cells(lab: FloatImage) -> NDArray[np.int32]:
 
 def histogram(cell: NDArray[np.int32], mask: BoolImage) -> FloatImage:
     """Share of every cell among the masked pixels, (4096,), spread over its neighbours."""
-    counts = np.bincount(cell[mask], minlength=COUNT).astype(np.float32)
+    counts = np.bincount(cell[mask], minlength=_BINS**3).astype(np.float32)
     cube = counts.reshape(_BINS, _BINS, _BINS)
     for axis in range(3):
         padded = np.pad(cube, [(1, 1) if k == axis else (0, 0) for k in range(3)], mode="edge")

@@ -6,17 +6,18 @@ import cv2
 import numpy as np
 
 from profiletool.image.candidates import View
-from profiletool.image.colours import COUNT
+from profiletool.image.colours import histogram
 from profiletool.image.ground import BoolImage, frame_of
 from profiletool.image.masks import connected_to
 
 # Skin of every tone has much the same hue (Xiao et al., Skin Res. Technol. 23 (2017) 21); in CIE
 # Lab, with room for the light it is seen in.
-_SKIN = (12.0, 4.0, 4.0), (92.0, 27.0, 36.0)
+_SKIN = (12.0, 4.0, 4.0), (92.0, 27.0, 45.0)
 _STRIP_SHARE = 0.04  # width of the strips along the frame, of its shorter side
-_COMMON = 0.01  # a colour of so much of two strips is the ground's
+_COMMON = 0.015  # a colour of so much of two opposite strips is the ground's
 _GAP_PX, _NEAR_PX = 5, 7
 _FINGER_SHARE = 0.02  # of the shorter side: no finger is thinner
+_LARGE = 0.04  # of the picture
 _HIDDEN = 0.05  # more of an outline than this lies along the hand
 _SLEEVE, _BEYOND = 0.03, 0.1  # more of a mask than this comes before the hand, and after it
 
@@ -25,10 +26,13 @@ def is_held(view: View, mask: BoolImage) -> bool:
     """Whether a hand hides part of the object that a mask (H, W) shows.
 
     A hand has the colour of skin, which the ground has not, and comes in over the frame: by
-    itself, or in a sleeve that the mask then holds too.
+    itself, or in a sleeve that the mask then holds too. On a mottled ground a large hand holds
+    something for certain, whatever the mask shows.
     """
     skin = _skin(view)
     hand = connected_to(frame_of(skin.shape, 0.0), skin) & ~view.barred
+    if hand.mean() > _LARGE and not (view.plain or view.boxed or view.point is not None):
+        return True  # among many things it is the one held that is meant
     outline = mask & ~_morphed(cv2.MORPH_ERODE, mask, 3)
     along = outline & _morphed(cv2.MORPH_DILATE, hand, _NEAR_PX)
     return bool(along.sum() > _HIDDEN * outline.sum()) or _sleeved(skin, mask)
@@ -49,9 +53,9 @@ def _skin(view: View) -> BoolImage:
     wide = max(2, round(_STRIP_SHARE * min(coloured.shape)))
     cell = view.cell
     strips = cell[:wide], cell[-wide:], cell[:, :wide], cell[:, -wide:]
-    common = [np.bincount(s.ravel(), minlength=COUNT) > _COMMON * s.size for s in strips]
-    # An arm comes in over one side, the ground is along all of them.
-    ground = np.sum(common, axis=0) > 1
+    top, bottom, left, right = (histogram(s, np.ones(s.shape, bool)) > _COMMON for s in strips)
+    # The ground is along opposite sides, an arm comes in over one or over a corner.
+    ground = (top & bottom) | (left & right)
     closed = _morphed(cv2.MORPH_CLOSE, coloured & ~ground[cell], _GAP_PX)
     return _morphed(cv2.MORPH_OPEN, closed, round(_FINGER_SHARE * min(closed.shape)) | 1)
 

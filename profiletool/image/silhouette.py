@@ -196,14 +196,6 @@ def _searched(
     view = view_of(small, ignored, outside, point)
     found = ranked(find_candidates(view), pointed=point is not None)
     best = found[0]
-    held = is_held(view, best.mask)
-    if held and hint.box is None and hint.point is None:
-        raise _unsure(
-            found,
-            rgb,
-            "a hand seems to hide part of the object; lay it down, or say with --box, --point or "
-            "--mask what to take",
-        )
     if best.confidence < BELIEVED:
         raise _unsure(
             found,
@@ -211,6 +203,14 @@ def _searched(
             "the object cannot be told from the ground for certain "
             f"({100 * best.confidence:.0f} %); say where it is with --box, --point or --mask, or "
             "photograph it on a plain ground of another colour",
+        )
+    held = is_held(view, best.mask)
+    if held and hint.box is None and hint.point is None:
+        raise _unsure(
+            found,
+            rgb,
+            "a hand seems to hold the object and hide part of it; lay it down, or say with --box, "
+            "--point or --mask what to take",
         )
     if point is None:
         refuse_another(best, found)

@@ -50,7 +50,7 @@ def found(scene: Scene, hint: Hint | None = None) -> Silhouette:
 @pytest.mark.parametrize("tone", [PALE, TAN, DARK])
 @pytest.mark.parametrize("ground", [GREY, (245, 244, 240), (60, 100, 80)])
 def test_a_held_object_is_refused(tone: tuple[int, ...], ground: tuple[int, ...]) -> None:
-    with pytest.raises(Unsure, match="a hand seems to hide part") as refused:
+    with pytest.raises(Unsure, match="a hand seems to hold") as refused:
         found(Scene(ground).arm(tone).fingers(tone))
     assert refused.value.candidates
 
@@ -107,8 +107,22 @@ def test_a_wooden_lid_of_what_leaves_the_picture_is_no_hand() -> None:
 
 def test_a_hand_that_hides_nothing() -> None:
     beside = Scene()
-    cv2.line(beside.rgb, (400, 250), (320, 200), TAN, 30, cv2.LINE_AA)
+    cv2.line(beside.rgb, (400, 250), (330, 200), TAN, 60, cv2.LINE_AA)
     assert found(beside).mask.sum() == pytest.approx(EGG, rel=0.005)
+
+
+def test_a_large_hand_among_many_things_holds_one_of_them() -> None:
+    paints = np.array([(30, 60, 200), (30, 170, 60), (20, 140, 150), (60, 60, 70)])
+    squares = np.random.default_rng(3).integers(0, 4, (HEIGHT // 20, WIDTH // 20))
+    ground = np.kron(paints[squares], np.ones((20, 20, 1)))
+    rgb = ground.astype(np.uint8)
+    egg = np.zeros(SHAPE, np.uint8)
+    cv2.circle(egg, (150, 100), 40, 1, -1)
+    cv2.line(rgb, (WIDTH, 250), (320, 200), TAN, 60)
+    nowhere = np.zeros(SHAPE, bool)
+    assert is_held(view_of(rgb, nowhere), egg > 0)
+    assert not is_held(view_of(rgb, nowhere, point=(150.0, 100.0)), egg > 0)
+    assert not is_held(view_of(ground.astype(np.uint8), nowhere), egg > 0)
 
 
 def test_a_table_of_wood_is_no_hand() -> None:
