@@ -9,6 +9,7 @@ from profiletool.image.candidates import View
 from profiletool.image.colours import histogram
 from profiletool.image.ground import BoolImage, frame_of
 from profiletool.image.masks import connected_to
+from profiletool.image.shadow import edge_strength
 
 # Skin of every tone has much the same hue (Xiao et al., Skin Res. Technol. 23 (2017) 21); in CIE
 # Lab, with room for the light it is seen in.
@@ -17,6 +18,7 @@ _STRIP_SHARE = 0.04  # width of the strips along the frame, of its shorter side
 _COMMON = 0.015  # a colour of so much of two opposite strips is the ground's
 _GAP_PX, _NEAR_PX = 5, 7
 _FINGER_SHARE = 0.02  # of the shorter side: no finger is thinner
+_FIRM_LAB, _ROUGH_PX = 1.5, 13  # a step per pixel, within so much of a hand's rough outline
 _LARGE = 0.04  # of the picture
 _HIDDEN = 0.05  # more of an outline than this lies along the hand
 _SLEEVE, _BEYOND = 0.03, 0.1  # more of a mask than this comes before the hand, and after it
@@ -30,12 +32,19 @@ def is_held(view: View, mask: BoolImage) -> bool:
     something for certain, whatever the mask shows.
     """
     skin = _skin(view)
-    hand = connected_to(frame_of(skin.shape, 0.0), skin) & ~view.barred
+    if _sleeved(skin, mask):
+        return True
+    hand = connected_to(frame_of(skin.shape, 0.0), skin)
+    if not _ends_firmly(view, hand, mask):
+        return False  # a warm shadow
+    hand &= ~view.barred
     if hand.mean() > _LARGE and not (view.plain or view.boxed or view.point is not None):
         return True  # among many things it is the one held that is meant
-    outline = mask & ~_morphed(cv2.MORPH_ERODE, mask, 3)
+    if (mask & ~hand).sum() < _BEYOND * mask.sum():
+        return False  # one thing, cut off by the frame
+    outline = _outline(mask)
     along = outline & _morphed(cv2.MORPH_DILATE, hand, _NEAR_PX)
-    return bool(along.sum() > _HIDDEN * outline.sum()) or _sleeved(skin, mask)
+    return bool(along.sum() > _HIDDEN * outline.sum())
 
 
 def _sleeved(skin: BoolImage, mask: BoolImage) -> bool:
@@ -45,6 +54,19 @@ def _sleeved(skin: BoolImage, mask: BoolImage) -> bool:
     beyond = rest & ~sleeve
     area = mask.sum()
     return bool(sleeve.sum() > _SLEEVE * area and beyond.sum() > _BEYOND * area)
+
+
+def _ends_firmly(view: View, hand: BoolImage, mask: BoolImage) -> bool:
+    """Whether most of a hand's outline has a firm edge nearby, away from a mask and the frame."""
+    rim = _outline(hand) & ~frame_of(mask.shape, 0.0)
+    rim &= ~_morphed(cv2.MORPH_DILATE, mask, 2 * _ROUGH_PX)
+    calm = np.asarray(cv2.GaussianBlur(view.lab, (0, 0), 2.0), np.float32)
+    firm = _morphed(cv2.MORPH_DILATE, edge_strength(calm) > _FIRM_LAB, _ROUGH_PX)
+    return not rim.any() or bool(firm[rim].mean() > 0.5)
+
+
+def _outline(mask: BoolImage) -> BoolImage:
+    return np.asarray(mask & ~_morphed(cv2.MORPH_ERODE, mask, 3))
 
 
 def _skin(view: View) -> BoolImage:
