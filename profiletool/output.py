@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import shutil
+import stat
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
@@ -12,6 +14,7 @@ from profiletool.errors import OutputError, UsageError
 from profiletool.workfolder import OLD, recover, working_beside
 
 _MARKS = ("design.json", "fe.json", "formula.json")  # any makes a folder ours to replace
+_TAKEN = (errno.ENOTEMPTY, errno.EEXIST)
 _TRIES = 100  # others may put theirs in the place while ours is on its way
 
 
@@ -116,10 +119,18 @@ def _check_writable(folder: Path) -> None:
 
 def _check_ours(folder: Path, place: Path, force: bool) -> None:
     """Refuse to replace what is no folder of ours; ``place`` is where it stands for the user."""
-    if not folder.is_dir() or folder.is_symlink():
-        raise UsageError(f"{place} exists and is no folder; choose another with --out")
-    ours = any((folder / mark).is_file() for mark in _MARKS) or not any(folder.iterdir())
-    if force and not ours:
+    try:
+        seen = folder.lstat()
+        if not stat.S_ISDIR(seen.st_mode):
+            raise UsageError(f"{place} exists and is no folder; choose another with --out")
+        names = os.listdir(folder)  # noqa: PTH208  all at once
+        stands = os.path.samestat(seen, folder.lstat())
+    except FileNotFoundError:
+        stands = False
+    except OSError as error:
+        raise _cannot_write(place, error) from error
+    # What another process replaces at this moment is looked at again when it is set aside.
+    if force and stands and names and not set(names) & set(_MARKS):
         raise UsageError(
             f"{place} holds no {' or '.join(_MARKS)}, so --force will not replace it; "
             "choose another with --out"
@@ -163,8 +174,8 @@ def _move_into_place(fresh: Path, folder: Path, aside: Path, force: bool) -> Non
             try:
                 fresh.rename(target)
                 return
-            except OSError:
-                if not os.path.lexists(target):
+            except OSError as error:
+                if error.errno not in _TAKEN and not os.path.lexists(target):
                     raise
             if not force:
                 check_free(folder, force)

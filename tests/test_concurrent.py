@@ -126,6 +126,74 @@ def test_a_reader_meets_whole_folders_only(tmp_path: Path) -> None:
     assert seen > 10
 
 
+@pytest.mark.parametrize("at", ["lstat", "listdir", "after"])
+def test_a_folder_that_is_exchanged_while_it_is_looked_at(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, at: str
+) -> None:
+    """Emptied by its process, which has put another in its place: ours all the same."""
+    out, aside = tmp_path / "out", tmp_path / "aside"
+    write_folder(out, dict.fromkeys(["design.json", "b"], b"old"), force=False)
+    lstat, listdir, looks = Path.lstat, os.listdir, []
+
+    def exchange() -> None:
+        if not aside.exists():
+            out.rename(aside)
+            (aside / "design.json").unlink()
+            if at == "after":
+                out.mkdir()
+                (out / "design.json").touch()
+
+    def looked(path: Path) -> os.stat_result:
+        looks.append(path)
+        if at == "lstat" and path == out:
+            exchange()
+        return lstat(path)
+
+    def listed(path: Path) -> list[str]:
+        if path != out or at == "lstat":
+            return listdir(path)
+        exchange()
+        return listdir(aside if at == "after" else path)
+
+    monkeypatch.setattr(Path, "lstat", looked)
+    monkeypatch.setattr(os, "listdir", listed)
+    check_free(out, force=True)
+    assert out in looks
+    assert aside.exists()
+
+
+@pytest.mark.parametrize("force", [False, True])
+def test_a_place_that_was_taken_and_is_free_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, force: bool
+) -> None:
+    """Another process had a folder there, and is about to replace it by its next."""
+    out = tmp_path / "out"
+    rename, lexists, tries = Path.rename, os.path.lexists, []
+
+    def taken_once(path: Path, target: Path) -> Path:
+        tries.append(target)
+        if tries.count(out) == 1 and target == out:
+            raise OSError(errno.ENOTEMPTY, "Directory not empty")
+        return rename(path, target)
+
+    monkeypatch.setattr(os.path, "lexists", lambda place: place != out and lexists(place))
+    monkeypatch.setattr(Path, "rename", taken_once)
+    write_folder(out, {"design.json": b"mine"}, force)
+    assert (out / "design.json").read_bytes() == b"mine"
+
+
+def test_a_folder_that_cannot_be_looked_into(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def denied(_: Path) -> list[str]:
+        raise PermissionError(13, "Permission denied")
+
+    (tmp_path / "out").mkdir()
+    monkeypatch.setattr(os, "listdir", denied)
+    with pytest.raises(OutputError, match="Permission denied"):
+        check_free(tmp_path / "out", force=True)
+
+
 @pytest.mark.parametrize("force", [False, True])
 def test_files_in_a_race(tmp_path: Path, force: bool) -> None:
     writers = [Writer(tmp_path / "f.json", n, 1, force=force, as_file=True) for n in range(4)]
