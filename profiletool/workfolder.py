@@ -103,5 +103,8 @@ def _remove(work: Path, lock: BinaryIO) -> None:
         for part in work.iterdir():
             if part.name != _LOCK:
                 shutil.rmtree(part, ignore_errors=True)
-    lock.close()  # Windows removes no open file
+    # While it is held, lest another takes the lock of what is about to go.
+    with contextlib.suppress(OSError):  # Windows removes no open file
+        (work / _LOCK).unlink()
+    lock.close()
     shutil.rmtree(work, ignore_errors=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -180,6 +181,23 @@ def test_a_place_that_was_taken_and_is_free_again(
     monkeypatch.setattr(Path, "rename", taken_once)
     write_folder(out, {"design.json": b"mine"}, force)
     assert (out / "design.json").read_bytes() == b"mine"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows removes no open file")
+def test_a_lock_goes_before_it_is_let_go_of(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Else another process could take the lock of a folder that is being removed."""
+    rmtree, left = shutil.rmtree, []
+
+    def removed(folder: Path, ignore_errors: bool) -> None:
+        left.append((folder / "lock").exists())
+        rmtree(folder, ignore_errors)
+
+    with workfolder.working_beside(tmp_path / "out"):
+        monkeypatch.setattr(shutil, "rmtree", removed)
+    assert left == [False]
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_folder_that_cannot_be_looked_into(
