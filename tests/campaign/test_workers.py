@@ -166,7 +166,8 @@ def test_a_process_that_dies_while_idle_loses_nothing(calls: Path, store: Store)
 def start(calls: Path, store: Store, seconds: float, count: int = 12) -> subprocess.Popen[bytes]:
     """Start a campaign of two workers in a process of its own."""
     code = "from tests.campaign.fake import main; main()"
-    with (calls.parent / "stderr").open("wb") as said:
+    # Python cleans up after a killed one, and says so, when the next may be under way.
+    with (calls.parent / f"{len(all_said(calls))}.stderr").open("xb") as said:
         return subprocess.Popen(
             [sys.executable, "-c", code, str(store.folder), str(count), "2"],
             env=environment(**{fake.CALLS: str(calls), fake.SECONDS: str(seconds)}),
@@ -175,9 +176,13 @@ def start(calls: Path, store: Store, seconds: float, count: int = 12) -> subproc
         )
 
 
+def all_said(calls: Path) -> list[Path]:
+    return sorted(calls.parent.glob("*.stderr"))
+
+
 def said(calls: Path) -> str:
     """What the last campaign and its workers said."""
-    return (calls.parent / "stderr").read_text()
+    return all_said(calls)[-1].read_text()
 
 
 def working(calls: Path) -> set[int]:
