@@ -8,7 +8,7 @@ import numpy as np
 from profiletool.image.candidates import View
 from profiletool.image.colours import histogram
 from profiletool.image.ground import BoolImage, frame_of
-from profiletool.image.masks import connected_to
+from profiletool.image.masks import connected_to, rim
 from profiletool.image.shadow import edge_strength
 
 # Skin of every tone has much the same hue (Xiao et al., Skin Res. Technol. 23 (2017) 21); in CIE
@@ -28,8 +28,8 @@ def is_held(view: View, mask: BoolImage) -> bool:
     """Whether a hand hides part of the object that a mask (H, W) shows.
 
     A hand has the colour of skin, which the ground has not, and comes in over the frame: by
-    itself, or in a sleeve that the mask then holds too. On a mottled ground a large hand holds
-    something for certain, whatever the mask shows.
+    itself, or in a sleeve that the mask then holds too. On a mottled ground a large hand is
+    taken to hold something, whatever the mask shows.
     """
     skin = _skin(view)
     if _sleeved(skin, mask):
@@ -42,7 +42,7 @@ def is_held(view: View, mask: BoolImage) -> bool:
         return True  # among many things it is the one held that is meant
     if (mask & ~hand).sum() < _BEYOND * mask.sum():
         return False  # one thing, cut off by the frame
-    outline = _outline(mask)
+    outline = rim(mask)
     along = outline & _morphed(cv2.MORPH_DILATE, hand, _NEAR_PX)
     return bool(along.sum() > _HIDDEN * outline.sum())
 
@@ -58,15 +58,11 @@ def _sleeved(skin: BoolImage, mask: BoolImage) -> bool:
 
 def _ends_firmly(view: View, hand: BoolImage, mask: BoolImage) -> bool:
     """Whether most of a hand's outline has a firm edge nearby, away from a mask and the frame."""
-    rim = _outline(hand) & ~frame_of(mask.shape, 0.0)
-    rim &= ~_morphed(cv2.MORPH_DILATE, mask, 2 * _ROUGH_PX)
+    outline = rim(hand) & ~frame_of(mask.shape, 0.0)
+    outline &= ~_morphed(cv2.MORPH_DILATE, mask, 2 * _ROUGH_PX)
     calm = np.asarray(cv2.GaussianBlur(view.lab, (0, 0), 2.0), np.float32)
     firm = _morphed(cv2.MORPH_DILATE, edge_strength(calm) > _FIRM_LAB, _ROUGH_PX)
-    return not rim.any() or bool(firm[rim].mean() > 0.5)
-
-
-def _outline(mask: BoolImage) -> BoolImage:
-    return np.asarray(mask & ~_morphed(cv2.MORPH_ERODE, mask, 3))
+    return not outline.any() or bool(firm[outline].mean() > 0.5)
 
 
 def _skin(view: View) -> BoolImage:

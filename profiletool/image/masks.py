@@ -49,6 +49,14 @@ def without_spurs(mask: BoolImage) -> BoolImage:
     return np.asarray(mask & ~connected_to(tips & (reach > 0.7 * radius + 1.0), tips))
 
 
+def rim(mask: BoolImage) -> BoolImage:
+    """Keep the pixels of a mask that touch one outside it; the frame itself is no outside."""
+    inner = cv2.erode(
+        mask.view(np.uint8), np.ones((3, 3), np.uint8), borderType=cv2.BORDER_REPLICATE
+    )
+    return np.asarray(mask & (inner == 0))
+
+
 def connected_to(seeds: BoolImage, mask: BoolImage) -> BoolImage:
     """Keep the regions of a mask that hold a seed."""
     count, labels = cv2.connectedComponents(mask.view(np.uint8), connectivity=4)

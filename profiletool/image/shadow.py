@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from profiletool.image.ground import BoolImage, FloatImage, Ground
-from profiletool.image.masks import connected_to, largest_filled
+from profiletool.image.masks import connected_to, largest_filled, rim
 
 # Edge strengths in Lab units per pixel: an object's edge against a shadow's.
 _FIRM_EDGE = 3.0
@@ -26,10 +26,7 @@ def edge_strength(lab: FloatImage) -> FloatImage:
 
 def _rim_strength(mask: BoolImage, strength: FloatImage) -> FloatImage:
     reach = cv2.dilate(strength, np.ones((3, 3), np.uint8))
-    inner = cv2.erode(
-        mask.view(np.uint8), np.ones((3, 3), np.uint8), borderType=cv2.BORDER_REPLICATE
-    )
-    return np.asarray(reach[mask & (inner == 0)])
+    return np.asarray(reach[rim(mask)])
 
 
 def without_shadow(region: BoolImage, lab: FloatImage, ground: Ground) -> BoolImage:
@@ -40,8 +37,8 @@ def without_shadow(region: BoolImage, lab: FloatImage, ground: Ground) -> BoolIm
     """
     strength = edge_strength(lab)
     shadow = _could_be_shadow(lab, ground, strength)
-    rim = _rim_strength(region, strength)
-    firm = max(_FIRM_EDGE, 0.6 * float(np.quantile(rim, 0.8))) if len(rim) else _FIRM_EDGE
+    around = _rim_strength(region, strength)
+    firm = max(_FIRM_EDGE, 0.6 * float(np.quantile(around, 0.8))) if len(around) else _FIRM_EDGE
 
     def firmness(mask: BoolImage) -> float:
         along = _rim_strength(mask, strength)
@@ -74,11 +71,11 @@ def _standing_out(region: BoolImage, distance: FloatImage) -> list[BoolImage]:
 
 def faded(region: BoolImage, lab: FloatImage) -> bool:
     """Whether much of an outline follows no edge, as where it takes in a shadow."""
-    rim = _rim_strength(region, edge_strength(lab))
-    if len(rim) == 0:
+    around = _rim_strength(region, edge_strength(lab))
+    if len(around) == 0:
         return False
-    weak = min(_WEAK_EDGE, 0.45 * float(np.quantile(rim, 0.8)))
-    return bool((rim < weak).mean() > _MOST_WEAK)
+    weak = min(_WEAK_EDGE, 0.45 * float(np.quantile(around, 0.8)))
+    return bool((around < weak).mean() > _MOST_WEAK)
 
 
 def _flooded(region: BoolImage, floodable: BoolImage) -> BoolImage:
