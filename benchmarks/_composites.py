@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from profiletool.image.masks import fill_holes
-from profiletool.records import Picture
+from profiletool.image.find.masks import fill_holes
+from profiletool.records.picture import Picture
 
 FloatImage = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ from _common import machine, table
 
 from profiletool.errors import ProfiletoolError
 from profiletool.pipeline import Result, run
-from profiletool.subject import Method, Request
+from profiletool.records.request import Method, Request
 
 SAMPLES = Path(__file__).parents[1] / "samples"
 

@@ -22,12 +22,12 @@ from fem.material import PAPER_RUBBER, MooneyRivlin
 from formula.files import load_formula, parse_formula, read_bytes, read_tree
 from formula.fit import errors_of
 from formula.theta import COEFFICIENTS, theta_deg
+from profiletool.campaign.derive import Base, Derivation, Plan, derive, formula_of
+from profiletool.campaign.formula_file import formula_file
 from profiletool.campaign.runs import Outcome, Task
 from profiletool.campaign.store import Store, default_folder
 from profiletool.campaign.workers import run_all
-from profiletool.derive import Base, Derivation, Plan, derive, formula_of
-from profiletool.formulafile import formula_file
-from profiletool.rubber import PRESETS, Rubber
+from profiletool.rubber.presets import PRESETS, Rubber
 
 PLAN = Plan(
     20.0, 2.0, PRESETS["paper"], (84.0, 108.0, 120.0, 132.0, 156.0), (6.0, 8.0, 10.0, 12.0, 14.0),

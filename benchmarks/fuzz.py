@@ -47,14 +47,14 @@ def readers() -> dict[str, Callable[[Path], object]]:
     """Give what reads a file of each kind as the commands do."""
     from typer.testing import CliRunner
 
-    from profiletool.beside import target_of
-    from profiletool.cli import app
-    from profiletool.derive import load_base
-    from profiletool.designfile import load_design
+    from profiletool.campaign.derive import load_base
+    from profiletool.cli.main import app
+    from profiletool.files.design_json import load_design
+    from profiletool.files.formula import read_formula
     from profiletool.image.load import load_picture
-    from profiletool.pipeline import read_formula
-    from profiletool.profile.vector import load_vector
-    from profiletool.rubber import parse_rubber
+    from profiletool.profile.drawing.load import load_vector
+    from profiletool.rubber.presets import parse_rubber
+    from profiletool.subject.recall import target_of
 
     def options(path: Path) -> None:
         # There is no picture: it ends before any work is done, and options come first.

@@ -18,10 +18,10 @@ from _common import machine, table
 from _composites import CUT_OUTS, GROUNDS, PHOTOS, composite
 
 from profiletool.errors import NoObject, Unsure
+from profiletool.image.find.masks import overlap
+from profiletool.image.find.silhouette import find_silhouette
 from profiletool.image.load import load_picture
-from profiletool.image.masks import overlap
-from profiletool.image.silhouette import find_silhouette
-from profiletool.records import Picture
+from profiletool.records.picture import Picture
 
 _RIGHT, _GOOD, _WRONG = 0.95, 0.97, 0.9
 _SKINS = {

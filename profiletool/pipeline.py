@@ -3,54 +3,34 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
-from formula.errors import BadFormula
-from formula.files import load_formula
-from formula.theta import Formula, widened
-from profiletool.errors import UnreadableInput
-from profiletool.joints.assign import Layout
-from profiletool.joints.kinematics import deform, misfit
-from profiletool.joints.limits import (
-    bridged,
-    disagreement,
-    extrapolated,
-    named,
-    polygon_warnings,
-    shape_warnings,
-    warnings,
-    wear,
-)
-from profiletool.joints.reach import Missed
-from profiletool.plan import (
-    PAPER_TOLERANCE_MM,
-    Plan,
-    misses,
-    not_good,
-    optimal_plan,
-    paper_plan,
-)
-from profiletool.records import (
-    Design,
-    Fit,
-    FormulaRef,
-    Gauze,
-    Profile,
-    Shape,
-    Source,
-    Tube,
-)
-from profiletool.sensitivity import sensitivity_of
-from profiletool.subject import Request, Subject, check_request, drawing_notes, find_subject
-from profiletool.template.unroll import best_seam, off_mesh
-from profiletool.verify import Check, Progress, check
+from formula.theta import Formula
+from profiletool.bending.kinematics import deform
+from profiletool.files.formula import read_formula
+from profiletool.joints.misfit import misfit
+from profiletool.joints.optimal_method import optimal_plan
+from profiletool.joints.paper_method import paper_plan
+from profiletool.joints.plan import Plan
+from profiletool.joints.windows import best_seam
+from profiletool.records.design import Design, Fit, FormulaRef, Gauze, Source, Tube
+from profiletool.records.frames import Shape
+from profiletool.records.profile import Profile
+from profiletool.records.request import Request, check_request
+from profiletool.subject.find import Subject, find_subject
+from profiletool.verdict.attempt import Attempt
+from profiletool.verdict.missed import Missed
+from profiletool.verdict.notes import notes_of
+from profiletool.verdict.reasons import misses_of, reasons_of
+from profiletool.verify.bench import FeBench
+from profiletool.verify.check import Check, check
+from profiletool.verify.run import Progress
+from profiletool.verify.sensitivity import sensitivity_of
 
 _STABLE_SHARE = 0.97  # of the pressure at which FE loses its stability
-DEPTH_MM = 1.0  # a tube that presses deeper into the object is warned of
 
 
 @dataclass(frozen=True)
@@ -91,42 +71,23 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
     check_request(request)
     formula = read_formula(request.formula, request.extrapolate)
     subject = find_subject(request, say)
-    profile = subject.profile
     attempt = _attempt(request, subject, formula, say, progress)
-    lower = _lower(request, attempt)
+    lower = _lower(attempt)
     if lower is not None:
         say(f"once more below {lower.material.max_pressure_bar:.2f} bar, where FE is stable")
         second = _attempt(lower, subject, formula, say, progress)
         attempt = second if second.design.verified else attempt
-    plan, shape, checked, design = attempt.plan, attempt.shape, attempt.check, attempt.design
-    layout = plan.layout
-    known = (checked.shape if checked is not None else None) or plan.bent
-    places = misses(plan, known, profile, request)
-    reasons = plan.reasons
-    if request.method == "optimal":
-        reasons = (*reasons, *not_good(design, profile, request, places))
-    apart = [place.reason for place in places if place.reason not in reasons]
-    notes = [*reasons, *apart, *plan.notes, *drawing_notes(request, subject)]
-    notes += _method_notes(request, plan, design, profile, formula)
-    notes += extrapolated(design, formula)
-    notes += disagreement(design.joints, design.pressure_bar)
-    notes += shape_warnings(known, profile, request.tolerance_mm or DEPTH_MM)
-    notes += _gauze_notes(layout, design.gauze)
-    notes += _fe_notes(checked)
+    attempt = replace(attempt, request=request)
+    misses = misses_of(attempt)
+    reasons = reasons_of(attempt, misses)
+    design = replace(
+        attempt.design, feasible=not reasons, warnings=notes_of(attempt, reasons, misses)
+    )
+    checked = attempt.check
     if checked is not None and checked.run is not None and checked.shape is not None:
-        design = replace(design, sensitivity=sensitivity_of(design, checked.run, profile))
-    design = replace(design, feasible=not reasons, warnings=tuple(notes))
-    return Result(request, design, reasons, subject, plan, shape, checked, places)
-
-
-@dataclass(frozen=True)
-class _Attempt:
-    """A plan with its design, the formula's shape of it, and its finite-element run."""
-
-    plan: Plan
-    design: Design
-    shape: Shape
-    check: Check | None
+        sensitivity = sensitivity_of(design, checked.run, subject.profile)
+        design = replace(design, sensitivity=sensitivity)
+    return Result(request, design, reasons, subject, attempt.plan, attempt.shape, checked, misses)
 
 
 def _attempt(
@@ -135,57 +96,32 @@ def _attempt(
     formula: Formula,
     say: Callable[[str], None],
     progress: Progress | None,
-) -> _Attempt:
+) -> Attempt:
     profile, material = subject.profile, request.material
-    make = optimal_plan if request.method == "optimal" else paper_plan
-    plan = make(request, profile, formula, say)
+    if request.method == "optimal":
+        bench = FeBench(material) if request.verify and request.refine else None
+        plan = optimal_plan(request, profile, formula, say, bench)
+    else:
+        plan = paper_plan(request, profile, formula, say)
     layout = plan.layout
     shape = deform(layout.bends(), layout.length_mm, material.radius_mm, layout.pose, profile.sign)
     design = _design(request, subject, formula, plan, shape)
+    attempt = Attempt(request, subject, formula, plan, design, shape, None)
     if not request.verify:
-        return _Attempt(plan, design, shape, None)
+        return attempt
     checked = _verified(design, profile, say, progress)
-    return _Attempt(plan, checked.design, shape, checked)
+    return replace(attempt, design=checked.design, check=checked)
 
 
-def _lower(request: Request, attempt: _Attempt) -> Request | None:
+def _lower(attempt: Attempt) -> Request | None:
     """Ask for less pressure where FE loses its stability below what a refined plan works at."""
+    request = attempt.request
     run = None if attempt.check is None else attempt.check.run
     ended = None if run is None else run.verification.critical
     if ended is None or request.method != "optimal" or not request.refine:
         return None
     bar = _STABLE_SHARE * ended.pressure_bar
     return replace(request, material=replace(request.material, max_pressure_bar=bar))
-
-
-def _method_notes(
-    request: Request, plan: Plan, design: Design, profile: Profile, formula: Formula
-) -> Iterator[str]:
-    """Say what the user should know of how the joints were chosen."""
-    if request.method == "paper":
-        tolerance = request.tolerance_mm or PAPER_TOLERANCE_MM
-        fit = design.fit.fe or design.fit.formula
-        yield from warnings(
-            plan.layout, profile, fit, tolerance, request.material, formula, design.verified
-        )
-        yield from polygon_warnings(plan.sectors, tolerance, request.joints)
-    else:
-        yield from bridged(profile)
-
-
-def read_formula(path: Path | None, extrapolate: bool = False) -> Formula:
-    """Read a formula file, or the paper's formula; let it be extrapolated or not.
-
-    Raises
-    ------
-    UnreadableInput
-        When the file holds no formula.
-    """
-    try:
-        formula = load_formula(path)
-    except BadFormula as error:
-        raise UnreadableInput(str(error)) from error
-    return widened(formula) if extrapolate else formula
 
 
 def _design(
@@ -224,7 +160,7 @@ def _design(
         joints=layout.joints,
         base_pose=layout.pose,
         fit=Fit(formula=misfit(shape, profile), fe=None, response=response),
-        feasible=not plan.reasons,
+        feasible=True,  # until the verdict
         verified=False,
         warnings=(),
         method=request.method,
@@ -240,27 +176,3 @@ def _verified(
 
     say(f"finite elements: the whole actuator to {design.pressure_bar:.2f} bar")
     return check(design, profile, share)
-
-
-def _fe_notes(checked: Check | None) -> Iterator[str]:
-    """Say what came of the finite-element run."""
-    if checked is None:
-        yield "NOT VERIFIED: no finite-element run has checked this design"
-    elif checked.failure is not None:
-        yield f"NOT VERIFIED: finite elements: {checked.failure}"
-    elif checked.run is not None:
-        yield from wear(checked.run.verification.last, checked.design)
-
-
-def _gauze_notes(layout: Layout, gauze: Gauze) -> Iterator[str]:
-    """Say what the user should know when cutting the gauze."""
-    seam = best_seam(layout.joints)
-    for numbers, what in (
-        (seam.crossed, "the weld line crosses the cuts of {}: weld again there"),
-        (
-            off_mesh(layout.joints, gauze),
-            "the cuts of {} lie off the mesh of the others: cut in the nearest meshes",
-        ),
-    ):
-        if numbers:
-            yield what.format(named(numbers))

@@ -14,21 +14,14 @@ import numpy as np
 
 from formula.files import load_formula
 from formula.theta import theta_deg
-from profiletool.designfile import to_json
-from profiletool.joints.assign import Layout
-from profiletool.joints.kinematics import deform, misfit
+from profiletool.bending.kinematics import deform
+from profiletool.files.design_json import to_json
+from profiletool.joints.misfit import misfit
+from profiletool.joints.paper.assign import Layout
+from profiletool.joints.windows import best_seam
 from profiletool.profile.target import Reach, profile_of_object
-from profiletool.records import (
-    Design,
-    Fit,
-    FormulaRef,
-    Gauze,
-    Joint,
-    Pose,
-    Source,
-    Tube,
-)
-from profiletool.template.unroll import best_seam
+from profiletool.records.design import Design, Fit, FormulaRef, Gauze, Joint, Source, Tube
+from profiletool.records.frames import Pose
 
 HERE = Path(__file__).parent
 ROOT_MM, END_MM, PRESSURE_BAR, SPHERE_MM = 10.0, 4.0, 1.90, 30.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typer.testing import CliRunner, Result
 
-from profiletool.cli import app
+from profiletool.cli.main import app
 
 
 def call(*arguments: object) -> Result:

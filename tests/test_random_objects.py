@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from profiletool.artifacts import template_files
-from profiletool.designfile import from_json, to_json
 from profiletool.errors import NoObject
-from profiletool.joints.assign import END_WRAP_MM, WRAP_MM
+from profiletool.files.design_json import from_json, to_json
+from profiletool.joints.bounds import END_WRAP_MM, WRAP_MM
+from profiletool.outputs import template_files
 from profiletool.pipeline import Request, run
 
 T = np.linspace(0.0, 2.0 * np.pi, 721)[:-1]

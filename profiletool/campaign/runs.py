@@ -22,13 +22,13 @@ from fem.material import MooneyRivlin
 from fem.measure import Sector
 from fem.meshsize import DEFAULT_MESH, PAPER_MESH, MeshSize
 from fem.solve import DEFAULT_OPTIONS, Solution, State, solve
+from profiletool.records.units import BAR_PER_MPA
 
 Model = Literal["converged", "paper"]
 
 SCHEMA = "profiletool.run/1"  # to be raised also where `run` reads other numbers off a solution
 _ROOT, _PLUG = 1.5, 0.05  # of the diameter: the paper's 30 mm, and the rigid last millimetre
 _PAPER_DIAMETER = 20.0
-_BAR = 10.0  # in a MPa
 _NUMBERS = ("pressures_bar", "theta_deg", "dx_mm", "dy_mm")
 
 
@@ -177,17 +177,19 @@ def run(task: Task) -> Outcome:
     try:
         actuator = actuator_of(task)
         while pressures:
-            asked = [p / _BAR for p in pressures]
+            asked = [p / BAR_PER_MPA for p in pressures]
             try:
                 found = solve(actuator, asked, settings.size, settings.options, threads=1)
             except NotConverged as error:
                 # Asked again for what was reached only, which is lost with the error.
-                failure = f"not converged beyond {_BAR * error.reached:.2f} bar"
+                failure = f"not converged beyond {BAR_PER_MPA * error.reached:.2f} bar"
                 reached = sum(p <= error.reached for p in asked)
                 pressures = pressures[: min(reached, len(pressures) - 1)]
                 continue
             if found.critical is not None:
-                failure = f"{found.critical.kind} at {_BAR * found.critical.pressure:.2f} bar"
+                failure = (
+                    f"{found.critical.kind} at {BAR_PER_MPA * found.critical.pressure:.2f} bar"
+                )
             return _read_off(found, pressures, failure)
     except FemError as error:
         failure = str(error)

@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
 
 from profiletool.errors import UnreadableInput, UsageError
+from profiletool.files.read import check_file
 from profiletool.image.structure import check_structure
-from profiletool.reading import check_file
-from profiletool.records import MM_PER_INCH, Picture
+from profiletool.records.picture import Picture
+from profiletool.records.units import MM_PER_INCH
 
 MAX_PIXELS = 64_000_000
 MAX_PIXELS_OF = {"WEBP": 36_000_000}  # decoded in several copies: they shall fit in a gibibyte

@@ -6,7 +6,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from profiletool.records import FloatArray, Picture
+from profiletool.records.picture import Picture
+from profiletool.records.units import FloatArray
 
 # The white margin printed round a marker is about two of its six cells wide.
 _QUIET_ZONE = 2.5 / 6.0

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from profiletool.errors import NoScale, UsageError
+from profiletool.image.find.masks import thickness
 from profiletool.image.marker import find_markers
-from profiletool.image.masks import thickness
-from profiletool.image.parallax import (
+from profiletool.image.sheet.parallax import (
     LARGEST_SHARE,
     PRINT_SHARE,
     USUAL_FOCAL,
@@ -19,36 +18,14 @@ from profiletool.image.parallax import (
     remaining,
     shrinkage,
 )
-from profiletool.records import Picture, Scale, Silhouette
+from profiletool.records.picture import Picture, Scale, Silhouette
+from profiletool.records.request import ScaleRequest, check_scale
 
 _AGREEMENT = 0.02  # markers, and the sides of one, differ by less or are not trusted
 _SQUARENESS = 0.1
 _CORNER_PX = 0.2  # scatter of a marker's corner
 _SCANNER_SHARE = 0.005
 _FAR_OFF = 4.0  # factor that unknown lenses and cropped pictures may make of a distance
-
-
-@dataclass(frozen=True)
-class ScaleRequest:
-    """What the user said about the scale; the first given wins, in this order.
-
-    Attributes
-    ----------
-    height_mm, width_mm : float or None
-        The object's full extent.
-    mm_per_px : float or None
-        The scale itself.
-    marker_mm : float or None
-        Side of the ArUco DICT_4X4_50 marker in the picture.
-    camera_distance_mm : float or None
-        From the camera's lens to the plane that a marker or the printed sheet lies in.
-    """
-
-    height_mm: float | None = None
-    width_mm: float | None = None
-    mm_per_px: float | None = None
-    marker_mm: float | None = None
-    camera_distance_mm: float | None = None
 
 
 def scale_of(picture: Picture, silhouette: Silhouette, request: ScaleRequest) -> Scale:
@@ -96,24 +73,6 @@ def scale_of(picture: Picture, silhouette: Silhouette, request: ScaleRequest) ->
         "nothing says how large the object is; give --height, --width, --mm-per-px or --marker-mm, "
         "or photograph it on a printed profiletool sheet"
     )
-
-
-def check_scale(request: ScaleRequest) -> None:
-    """Refuse lengths that are no lengths.
-
-    Raises
-    ------
-    UsageError
-    """
-    for option, value in {
-        "--height": request.height_mm,
-        "--width": request.width_mm,
-        "--mm-per-px": request.mm_per_px,
-        "--marker-mm": request.marker_mm,
-        "--camera-distance": request.camera_distance_mm,
-    }.items():
-        if value is not None and not (math.isfinite(value) and value > 0.0):
-            raise UsageError(f"{option} is {value:g}; give a positive number of millimetres")
 
 
 def marker_scale(picture: Picture, marker_mm: float) -> Scale:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from profiletool.records import FloatArray
+from profiletool.records.units import FloatArray
 
 _DEGREE = 3  # of the polynomials for the positions: circles shrink by (h/R)⁴ only
 _HEADING_NOISE_RAD = np.radians(0.5)  # what smoothing leaves of the pixels' noise

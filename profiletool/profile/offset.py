@@ -11,7 +11,8 @@ import shapely
 
 from profiletool.errors import NoObject
 from profiletool.profile.curve import ring_stretch
-from profiletool.records import FloatArray, Profile
+from profiletool.records.profile import Profile
+from profiletool.records.units import FloatArray
 
 _QUADRANT_SEGMENTS = 64  # a 10 mm arc drawn to 0.001 mm
 _HAIR_MM = 1e-3

@@ -10,7 +10,7 @@ from contourpy import contour_generator
 from scipy.spatial import KDTree
 from shapely import affinity
 
-from profiletool.records import FloatArray
+from profiletool.records.units import FloatArray
 
 # Bulbs, bottles, vases and pears as photographed differ from their mirror images by up to 6 % of
 # their area, what has a handle by 20 % and more. At 10 % the two sides lie a twentieth of the

@@ -10,7 +10,7 @@ from scipy.optimize import minimize
 from shapely import affinity
 
 from profiletool.profile.symmetry import body_of, mismatch_of
-from profiletool.records import FloatArray
+from profiletool.records.units import FloatArray
 
 _STEPS_DEG = np.arange(-90.0, 90.0, 5.0)
 _MOST = 4  # valleys that are looked into

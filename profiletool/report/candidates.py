@@ -9,7 +9,7 @@ import numpy as np
 from contourpy import contour_generator
 from numpy.typing import NDArray
 
-from profiletool.records import FloatArray
+from profiletool.records.units import FloatArray
 from profiletool.report.figure import panels, png, titled
 from profiletool.report.palette import INK, RED
 

@@ -10,8 +10,8 @@ from matplotlib import colormaps
 
 from formula.fit import Errors
 from formula.theta import Terms, theta_deg
-from profiletool.derive import Derivation, formula_of
-from profiletool.records import FloatArray
+from profiletool.campaign.derive import Derivation, formula_of
+from profiletool.records.units import FloatArray
 from profiletool.report.figure import panels, png, styles
 from profiletool.report.palette import BLUE, GREY, INK, RED
 

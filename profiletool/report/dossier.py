@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from profiletool.joints.optimal import TradeOff
-from profiletool.records import Shape, Verification
-from profiletool.report.overlay import Scene
+from profiletool.joints.optimal.choose import TradeOff
+from profiletool.pipeline import Result
+from profiletool.records.design import Design
+from profiletool.records.fe import Verification
+from profiletool.records.frames import Shape
+from profiletool.report.asked import options_of
 from profiletool.report.plots import Mark
+from profiletool.report.scene import Scene
 from profiletool.report.tables import Option
-from profiletool.verify import Check
+from profiletool.verify.check import Check
 
 
 @dataclass(frozen=True)
@@ -59,3 +63,24 @@ class Dossier:
         if self.check is None or self.check.failure is None:
             return "no finite-element run has checked this design"
         return f"finite elements: {self.check.failure}"
+
+
+def dossier_of(result: Result, scene: Scene, template_svg: str) -> Dossier:
+    """Gather what the report tells."""
+    return Dossier(
+        scene,
+        result.shape,
+        result.check,
+        result.reasons,
+        formula_marks(result.design),
+        result.plan.trade_off,
+        template_svg,
+        options_of(result.request),
+    )
+
+
+def formula_marks(design: Design) -> tuple[Mark, ...]:
+    """Give the formula's angles to compare with."""
+    angles = [joint.sense * joint.theta_formula_deg for joint in design.joints]
+    label = f"formula, {design.pressure_bar:.2f} bar"
+    return (Mark(label, design.pressure_bar, angles),)

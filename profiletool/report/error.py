@@ -9,11 +9,14 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from profiletool.joints.parameters import feet, target_points
-from profiletool.records import Fit, FloatArray, Misfit, Profile, Shape
+from profiletool.joints.misfit import feet, target_points
+from profiletool.records.design import Fit, Misfit
+from profiletool.records.frames import Shape
+from profiletool.records.profile import Profile
+from profiletool.records.units import FloatArray
 from profiletool.report.figure import WIDE_IN, legend_below, panels, titled
-from profiletool.report.overlay import Scene
 from profiletool.report.palette import BLUE, GREEN, GREY, INK, PURPLE
+from profiletool.report.scene import Scene
 
 _APART = 4.0  # times as large: a curve that would flatten the others
 

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from profiletool.records import Design, Misfit, Verification
+from profiletool.records.design import Design, Misfit
+from profiletool.records.fe import Verification
 
 _ANGLE_DECIMALS = 4  # deg: the mesh is good to a hundredth
 _SIGNIFICANT = 4

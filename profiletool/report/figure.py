@@ -7,9 +7,12 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
+from PIL import Image
 
 from profiletool.report.palette import BLUE, GREEN, GRID, INK, NAMES, ORANGE, PURPLE, RED, SKY
 
@@ -87,3 +90,10 @@ def _for_a_page(document: str) -> str:
     for colour, name in NAMES.items():
         element = element.replace(colour, f"var(--{name})")
     return element
+
+
+def mask_png(mask: NDArray[np.bool_]) -> bytes:
+    """Encode a mask (H, W): white object on black."""
+    buffer = io.BytesIO()
+    Image.fromarray(mask).save(buffer, "PNG", compress_level=1)
+    return buffer.getvalue()

@@ -13,7 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from profiletool.records import Design, FloatArray, Shape, Verification
+from profiletool.records.design import Design
+from profiletool.records.fe import Verification
+from profiletool.records.frames import Shape
+from profiletool.records.units import FloatArray
 
 _POINTS = 84  # of a line, at most some more
 _PER_MM = 100

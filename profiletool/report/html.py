@@ -11,7 +11,7 @@ from pathlib import PurePath
 
 from matplotlib.figure import Figure
 
-from profiletool.records import Verification
+from profiletool.records.fe import Verification
 from profiletool.report.dossier import Dossier
 from profiletool.report.error import error_figure
 from profiletool.report.figure import svg

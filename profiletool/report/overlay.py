@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import textwrap
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,80 +12,19 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from matplotlib.patheffects import withStroke
-from numpy.typing import NDArray
-from PIL import Image
 
-from profiletool.joints.kinematics import Bend
 from profiletool.profile.offset import offset_curve, offset_points
-from profiletool.records import Design, FloatArray, Joint, Picture, Profile, Shape
+from profiletool.records.design import Design, Joint
+from profiletool.records.frames import Shape
+from profiletool.records.units import FloatArray
 from profiletool.report.palette import BLUE, GREEN, GREY, INK, PURPLE, RED, SKY, YELLOW
+from profiletool.report.scene import Scene
 from profiletool.report.text import scale_text
 
 _DPI = 130
-_LONGEST_PX = 1000  # the picture is shown no finer than the figure resolves
 _MARGIN_MM = 12.0
 _SCALE_BAR_MM = 20.0
 _LABEL_MM = 8.0  # room that a label takes
-
-
-@dataclass(frozen=True)
-class Backdrop:
-    """The picture behind the drawing: pixels (H, W, 3) and where they lie.
-
-    ``extent`` is (left, right, bottom, top) in mm, object frame.
-    """
-
-    rgb: NDArray[np.uint8]
-    extent: tuple[float, float, float, float]
-
-
-@dataclass(frozen=True)
-class Scene:
-    """All that the overlay shows.
-
-    ``backdrop`` is None for a drawn profile, ``fe`` (the tube by finite elements) where it was
-    not verified; ``bent`` is the tube as what the joints were chosen ``by`` bends it. ``places``
-    are the joints' on the profile, ``missed`` the stretches that the tube is far off, mm.
-    """
-
-    backdrop: Backdrop | None
-    profile: Profile
-    places: FloatArray
-    design: Design
-    bends: Sequence[Bend]
-    by: str
-    bent: Shape
-    straight: Shape
-    fe: Shape | None = None
-    missed: Sequence[tuple[float, float]] = ()
-
-
-def backdrop_of(
-    picture: Picture, mm_per_px: float, origin_px: tuple[float, float], rotated_deg: float = 0.0
-) -> Backdrop:
-    """Place a picture in the object frame, thinned to what the figure resolves.
-
-    It is turned counter-clockwise about its middle first; ``origin_px`` lies in what comes of
-    that. What is transparent, or outside the picture, is shown white.
-    """
-    height, width = picture.rgb.shape[:2]
-    every = max(1, round(max(height, width) / _LONGEST_PX))
-    rgb = picture.rgb[::every, ::every]
-    if picture.alpha is not None:
-        cover = picture.alpha[::every, ::every, None] / 255.0
-        rgb = np.rint(255.0 - (255.0 - rgb) * cover).astype(np.uint8)
-    size = np.array([width, height], float)
-    if rotated_deg:
-        pixel = size / rgb.shape[1::-1]
-        image = Image.fromarray(rgb).rotate(
-            rotated_deg, Image.Resampling.BICUBIC, expand=True, fillcolor="white"
-        )
-        rgb, size = np.asarray(image), pixel * image.size
-    x, y = 0.5 * (width - 1.0) - origin_px[0], origin_px[1] - 0.5 * (height - 1.0)
-    half, tall = 0.5 * size
-    extent = np.array([x - half, x + half, y - tall, y + tall]) * mm_per_px
-    left, right, bottom, top = extent.tolist()
-    return Backdrop(rgb, (left, right, bottom, top))
 
 
 def draw_overlay(scene: Scene) -> bytes:

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from profiletool.records import FeState, FloatArray, Verification
+from profiletool.records.fe import FeState, Verification
+from profiletool.records.units import FloatArray
 from profiletool.report.figure import WIDE_IN, legend_below, panels, styles, titled
 from profiletool.report.palette import GREY, RED
 

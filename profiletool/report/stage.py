@@ -11,10 +11,11 @@ import numpy as np
 import shapely
 from PIL import Image
 
-from profiletool.records import FloatArray, Shape
+from profiletool.records.frames import Shape
+from profiletool.records.units import FloatArray
 from profiletool.report.film import Film, drawn, path, ring_path
 from profiletool.report.markup import Markup, signed, table, tag
-from profiletool.report.overlay import Backdrop, Scene
+from profiletool.report.scene import Backdrop, Scene
 
 _MARGIN_MM = 7.0
 _LONGEST_PX = 1000

@@ -7,11 +7,14 @@ from dataclasses import dataclass
 from math import pi
 
 from profiletool import __version__
-from profiletool.records import Design, FeState, FloatArray, Joint, Source, Verification
+from profiletool.joints.windows import slit_rows
+from profiletool.records.design import Design, Joint, Source
+from profiletool.records.fe import FeState, Verification
+from profiletool.records.units import FloatArray
 from profiletool.report.markup import Markup, joined, pairs, signed, table, tag
 from profiletool.report.text import scale_text
 from profiletool.template.labels import short
-from profiletool.template.unroll import slit_rows, slits
+from profiletool.template.unroll import slits
 
 _NOTHING = "–"
 

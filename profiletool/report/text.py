@@ -6,8 +6,8 @@ import json
 from collections.abc import Iterator, Sequence
 
 from formula.table import Assignment, Table
-from profiletool.joints.limits import named
-from profiletool.records import Design, Misfit, Source
+from profiletool.records.design import Design, Misfit, Source
+from profiletool.verdict.notes import named
 
 EXTRAPOLATED = "beyond what the formula was fitted on: extrapolated"
 _COLUMNS = ("pressure_bar", "openF_mm", "alpha_closed_deg", "theta_deg")

@@ -8,12 +8,12 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
-from profiletool.joints.optimal import TradeOff
-from profiletool.records import Design
+from profiletool.joints.optimal.choose import TradeOff
+from profiletool.records.design import Design
+from profiletool.records.units import BAR_PER_MPA
 from profiletool.report.figure import WIDE_IN, panels
 from profiletool.report.palette import BLUE, GREEN, GREY, GRID, INK, PURPLE, RED, SKY
 
-_BAR = 10.0  # in a MPa
 _COLOURS = (BLUE, RED, GREEN, PURPLE, SKY, GREY)
 _MARKERS = ("o", "s", "^", "D", "v", "P")
 _SHOWN = 6  # numbers of joints drawn against pressure
@@ -28,7 +28,7 @@ def trade_off_csv(found: TradeOff) -> bytes:
             rms = found.rms_mm[p, j]
             if np.isfinite(rms):
                 last = f"{polished:.4f}" if np.isfinite(polished) else ""
-                rows.append(f"{j + 1},{_BAR * pressure:.2f},{rms:.4f},{last}")
+                rows.append(f"{j + 1},{BAR_PER_MPA * pressure:.2f},{rms:.4f},{last}")
     return ("\n".join(rows) + "\n").encode()
 
 
@@ -76,7 +76,8 @@ def _draw_pressures(axes: Any, found: TradeOff, design: Design) -> None:
     shown = sorted({*some.tolist(), *({chosen} & set(known.tolist()))})
     for k, number in enumerate(shown):
         axes.plot(
-            _BAR * found.pressure, found.rms_mm[:, number - 1], color=_COLOURS[k % len(_COLOURS)],
+            BAR_PER_MPA * found.pressure,
+            found.rms_mm[:, number - 1], color=_COLOURS[k % len(_COLOURS)],
             marker=_MARKERS[k % len(_MARKERS)], ms=4, lw=2.4 if number == chosen else 1.3,
             label=f"{number} joint{'s' * (number > 1)}",
         )  # fmt: skip

@@ -8,8 +8,8 @@ import numpy as np
 from reportlab.pdfgen.canvas import Canvas
 from reportlab.pdfgen.pathobject import PDFPathObject
 
-from profiletool.image.board import Board, Paper, board_for, ink
-from profiletool.records import FloatArray
+from profiletool.image.sheet.board import Board, Paper, board_for, ink
+from profiletool.records.units import FloatArray
 from profiletool.template.drawing import RULER_MM, Text
 from profiletool.template.pdf import PT_PER_MM
 

@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 from shapely import STRtree
 
-from profiletool.records import FloatArray
+from profiletool.records.units import FloatArray
 from profiletool.template.draughting import LETTER_MM, geometry_of, runs_on
 from profiletool.template.drawing import Line, Text, arrow
 

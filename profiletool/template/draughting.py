@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 from shapely.ops import linemerge, substring
 
-from profiletool.records import FloatArray
+from profiletool.records.units import FloatArray
 from profiletool.template.drawing import FLATTENING_MM, Anchor, LayerName, Line, Text, arrow
 
 DASHES = (3.0, 1.5)

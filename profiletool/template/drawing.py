@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from profiletool.records import FloatArray
+from profiletool.records.units import FloatArray
 from profiletool.template.strokes import text_strokes, text_width
 
 LayerName = Literal["CUT_OUTER", "CUT_INNER", "MARK", "NOTE", "REF"]

@@ -12,7 +12,10 @@ import numpy as np
 import shapely
 
 from profiletool.profile.symmetry import Symmetry
-from profiletool.records import Design, FloatArray, Profile, Shape
+from profiletool.records.design import Design
+from profiletool.records.frames import Shape
+from profiletool.records.profile import Profile
+from profiletool.records.units import FloatArray
 from profiletool.template.labels import short
 from profiletool.template.palm import ASIDE_MM, EDGE_MM, HOLE_MM, Clamp, Palm
 

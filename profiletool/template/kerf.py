@@ -8,7 +8,7 @@ import numpy as np
 from shapely import Polygon
 from shapely.geometry.polygon import orient
 
-from profiletool.records import FloatArray
+from profiletool.records.units import FloatArray
 from profiletool.template.drawing import Line, polyline
 from profiletool.template.unroll import SAME_MM, Slit
 

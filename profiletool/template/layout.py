@@ -8,20 +8,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from profiletool.records import Design, FloatArray, Joint
+from profiletool.joints.windows import SeamChoice, seam_at
+from profiletool.records.design import Design, Joint
+from profiletool.records.units import FloatArray
 from profiletool.template.drawing import Box, Drawing, Line
 from profiletool.template.kerf import check_kerf, outline_path, slit_paths
 from profiletool.template.kinds import KINDS, PLAIN, Wish
 from profiletool.template.labels import joint_labels
 from profiletool.template.margins import LEFT_MM, RIGHT_MM, gaps, margins
 from profiletool.template.notes import notes, title_of
-from profiletool.template.unroll import (
-    SeamChoice,
-    Slit,
-    roll_of,
-    seam_at,
-    slits,
-)
+from profiletool.template.unroll import Slit, roll_of, slits
 
 NOTCH_MM = 3.0
 LEAST_NOTCH_MM = 0.5

@@ -8,7 +8,10 @@ import numpy as np
 import shapely
 
 from profiletool.profile.symmetry import symmetry_of
-from profiletool.records import Design, FloatArray, Profile, Shape
+from profiletool.records.design import Design
+from profiletool.records.frames import Shape
+from profiletool.records.profile import Profile
+from profiletool.records.units import FloatArray
 from profiletool.template.callouts import lettered
 from profiletool.template.draughting import no_line_twice
 from profiletool.template.drawing import Drawing, extent

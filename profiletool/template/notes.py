@@ -7,7 +7,8 @@ from pathlib import PurePath
 
 import numpy as np
 
-from profiletool.records import TOWARD_DEG, Design
+from profiletool.joints.windows import SeamChoice, off_mesh, slit_rows
+from profiletool.records.design import TOWARD_DEG, Design
 from profiletool.template.drawing import (
     RULER_MM,
     Box,
@@ -22,7 +23,7 @@ from profiletool.template.drawing import (
 from profiletool.template.kinds import KINDS, Wish
 from profiletool.template.labels import short, times
 from profiletool.template.strokes import text_width
-from profiletool.template.unroll import SeamChoice, off_mesh, sheet_size, slit_rows
+from profiletool.template.unroll import sheet_size
 
 TITLE_MM, ALARM_MM, BODY_MM, SMALL_MM = 5.0, 6.0, 3.0, 2.5
 LINE_SPACING = 1.7

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from profiletool.records import FloatArray
+from profiletool.records.units import FloatArray
 
 HOLE_MM = 3.2  # M3, clearance
 ASIDE_MM = 6.0  # from a tube's side to the middle of its screws

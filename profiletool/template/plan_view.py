@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
-from profiletool.records import FloatArray
+from profiletool.records.units import FloatArray
 from profiletool.template.callouts import Callout
 from profiletool.template.draughting import CHAIN, LETTER_MM, dashed, dimension
 from profiletool.template.drawing import Line, Text, circle, polyline, wrapped

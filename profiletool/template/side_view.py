@@ -9,7 +9,10 @@ import shapely
 
 from profiletool.profile.side import top_middle
 from profiletool.profile.symmetry import Symmetry
-from profiletool.records import Design, FloatArray, Profile, Shape
+from profiletool.records.design import Design
+from profiletool.records.frames import Shape
+from profiletool.records.profile import Profile
+from profiletool.records.units import FloatArray
 from profiletool.template.callouts import Callout
 from profiletool.template.draughting import (
     CHAIN,

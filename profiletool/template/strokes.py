@@ -12,7 +12,7 @@ from functools import cache
 
 import numpy as np
 
-from profiletool.records import FloatArray
+from profiletool.records.units import FloatArray
 
 CAP_UNITS = 12
 GAP_UNITS = 3

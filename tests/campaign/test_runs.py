@@ -37,8 +37,9 @@ from profiletool.campaign.runs import (
     run,
     to_json,
 )
-from profiletool.records import Material
-from profiletool.verify import DOWN, LYING, inflate, joint_actuator
+from profiletool.records.request import Material
+from profiletool.verify.run import DOWN, LYING, inflate
+from profiletool.verify.tube import joint_actuator
 
 ROOT = Path(__file__).resolve().parents[2]
 TASK = Task(10.0, 84.0, 20.0, 2.0, PAPER_RUBBER, (0.2, 0.4))

@@ -14,8 +14,9 @@ from PIL import Image
 from profiletool.errors import NoObject, UnreadableInput
 from profiletool.image import load, structure
 from profiletool.image.load import load_picture
-from profiletool.profile import svg_tree, vector, vector_chain, vector_dxf
-from profiletool.profile.vector import load_vector
+from profiletool.profile.drawing import chain, read_dxf, svg_tree
+from profiletool.profile.drawing import load as load_drawing
+from profiletool.profile.drawing.load import load_vector
 
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="0 0 100 100">'
 DXF = (
@@ -66,14 +67,14 @@ def test_svg_attributes_are_not_handed_down_without_end(tmp_path: Path) -> None:
 @pytest.mark.parametrize("limit", ["MAX_LINES", "MAX_ENTITIES", "MAX_SPLINE_POINTS"])
 def test_dxf_of_too_much(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, limit: str) -> None:
     (tmp_path / "a.dxf").write_text(DXF)
-    monkeypatch.setattr(vector_dxf, limit, 1)
+    monkeypatch.setattr(read_dxf, limit, 1)
     with pytest.raises(UnreadableInput, match="more than 1 "):
         load_vector(tmp_path / "a.dxf")
 
 
 @pytest.mark.parametrize("line_end", [b"\n", b"\r", b"\r\n"])
 def test_dxf_lines_are_counted_however_they_end(tmp_path: Path, line_end: bytes) -> None:
-    (tmp_path / "a.dxf").write_bytes(b"0" + line_end * (vector_dxf.MAX_LINES + 1))
+    (tmp_path / "a.dxf").write_bytes(b"0" + line_end * (read_dxf.MAX_LINES + 1))
     with pytest.raises(UnreadableInput, match="lines of text"):
         load_vector(tmp_path / "a.dxf")
 
@@ -85,7 +86,7 @@ def test_binary_dxf_has_a_limit_of_its_own(tmp_path: Path) -> None:
 
 
 def test_lines_that_all_end_in_one_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(vector_chain, "MAX_MEETINGS", 10_000)
+    monkeypatch.setattr(chain, "MAX_MEETINGS", 10_000)
     star = "".join(f'<line x2="{n}" y2="{n * n % 97}"/>' for n in range(1, 300))
     (tmp_path / "a.svg").write_text(f"{SVG}{star}</svg>")
     with pytest.raises(UnreadableInput, match="far too many lines end in one place"):
@@ -103,7 +104,7 @@ def test_a_fine_outline_is_not_refused(tmp_path: Path) -> None:
     text = "".join(f"{n % 50_000 * 1e-3},{n * 1e-2}\n" for n in range(50_000))
     (tmp_path / "a.csv").write_text(text)
     assert len(load_vector(tmp_path / "a.csv").points) == 50_000
-    assert vector.MAX_CLOSE_PAIRS > 50_000
+    assert load_drawing.MAX_CLOSE_PAIRS > 50_000
 
 
 # --- pictures ---------------------------------------------------------------------------------

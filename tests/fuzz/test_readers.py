@@ -16,15 +16,15 @@ from hypothesis import strategies as st
 
 from formula.errors import BadFormula
 from formula.files import load_formula
-from profiletool import reading
-from profiletool.beside import target_of
-from profiletool.derive import load_base
-from profiletool.designfile import load_design
+from profiletool.campaign.derive import load_base
 from profiletool.errors import ProfiletoolError, UnreadableInput
+from profiletool.files import read
+from profiletool.files.design_json import load_design
+from profiletool.files.formula import read_formula
 from profiletool.image.load import load_picture
-from profiletool.pipeline import read_formula
-from profiletool.profile.vector import load_vector
-from profiletool.rubber import parse_rubber
+from profiletool.profile.drawing.load import load_vector
+from profiletool.rubber.presets import parse_rubber
+from profiletool.subject.recall import target_of
 from tests.calls import call
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -164,11 +164,11 @@ def test_an_endless_device_is_no_file(kind: str, tmp_path: Path) -> None:
 def test_a_file_that_grows_while_it_is_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(reading, "check_file", lambda *_: None)
+    monkeypatch.setattr("profiletool.files.read.check_file", lambda *_: None)
     (tmp_path / "a.csv").write_bytes(b"0,0\n" * 10)
     with pytest.raises(UnreadableInput, match="larger than"):
-        reading.read_file(tmp_path / "a.csv", 20, "a table")
-    assert reading.read_file(tmp_path / "a.csv", 40, "a table") == b"0,0\n" * 10
+        read.read_file(tmp_path / "a.csv", 20, "a table")
+    assert read.read_file(tmp_path / "a.csv", 40, "a table") == b"0,0\n" * 10
 
 
 def test_a_formula_file_has_a_limit(tmp_path: Path) -> None:

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from profiletool.errors import NoScale, UsageError
+from profiletool.image.find.silhouette import find_silhouette
 from profiletool.image.marker import find_markers
-from profiletool.image.scale import ScaleRequest, scale_of
-from profiletool.image.silhouette import find_silhouette
-from profiletool.records import Picture, Silhouette
+from profiletool.image.scale import scale_of
+from profiletool.records.picture import Picture, Silhouette
+from profiletool.records.request import ScaleRequest
 
 OUTLINE = np.array([[10.0, 20.0], [10.0, 120.0], [60.0, 120.0], [60.0, 20.0]])
 SILHOUETTE = Silhouette(OUTLINE, np.zeros((1, 1), bool), "alpha matte", 0.0, frozenset())

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from profiletool.image.board import BOARDS, Board
-from profiletool.image.measure import Measured, measure
-from profiletool.image.rectify import Rectified, rectify
-from profiletool.image.silhouette import find_silhouette
+from profiletool.image.find.silhouette import find_silhouette
+from profiletool.image.sheet.board import BOARDS, Board
+from profiletool.image.sheet.measure import Measured, measure
+from profiletool.image.sheet.rectify import Rectified, rectify
 from tests.image.views import Body, Shot, photograph
 
 

@@ -12,8 +12,8 @@ from functools import cache
 import cv2
 import numpy as np
 
-from profiletool.image.board import Board, ink
-from profiletool.records import Picture
+from profiletool.image.sheet.board import Board, ink
+from profiletool.records.picture import Picture
 
 PX_PER_MM = 10
 

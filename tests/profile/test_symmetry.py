@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from profiletool.profile.symmetry import LARGEST_MISMATCH, mirrored_mean, symmetry_of
-from profiletool.subject import Request, find_subject
+from profiletool.records.request import Request
+from profiletool.subject.find import find_subject
 
 SAMPLES = Path(__file__).parents[2] / "samples"
 T = np.linspace(0.0, 2.0 * np.pi, 401)[:-1]

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from profiletool.image.find.silhouette import find_silhouette
 from profiletool.image.load import load_picture
-from profiletool.image.silhouette import find_silhouette
 from profiletool.profile.symmetry import LARGEST_MISMATCH
 from profiletool.profile.upright import turned, upright_of
 

@@ -8,22 +8,17 @@ from typing import Any, cast
 
 import numpy as np
 
-from profiletool.artifacts import dossier_of, scene_of
-from profiletool.joints.kinematics import Bend, deform
+from profiletool.bending.kinematics import Bend, deform
 from profiletool.pipeline import Request, Result, run
-from profiletool.records import (
-    Critical,
-    Design,
-    FeState,
-    Misfit,
-    Sensitivity,
-    Verification,
-    side_sign,
-)
-from profiletool.report.dossier import Dossier
+from profiletool.records.design import Design, Misfit, Sensitivity
+from profiletool.records.fe import Critical, FeState, Verification
+from profiletool.records.frames import side_sign
+from profiletool.report.dossier import Dossier, dossier_of
+from profiletool.report.scene import scene_of
 from profiletool.template.layout import build_sheet
 from profiletool.template.svg import write_svg
-from profiletool.verify import Check, Run
+from profiletool.verify.check import Check
+from profiletool.verify.run import Run
 
 
 def designed(file: Path, **asked: Any) -> Result:

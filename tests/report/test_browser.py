@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from profiletool.artifacts import files_of
+from profiletool.outputs import files_of
 from profiletool.pipeline import Request, Result, run
 from profiletool.report.film import Film, film_of
 from profiletool.report.html import report_html

@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from profiletool.artifacts import scene_of
 from profiletool.profile.offset import offset_points
-from profiletool.records import Misfit, Shape
+from profiletool.records.design import Misfit
+from profiletool.records.frames import Shape
 from profiletool.report.error import error_figure, gap_along
 from profiletool.report.figure import png, svg
-from profiletool.report.overlay import Scene
 from profiletool.report.palette import NAMES
+from profiletool.report.scene import Scene, scene_of
 from tests.report.dossiers import designed
 
 

@@ -9,8 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from profiletool.designfile import load_design
-from profiletool.records import Critical, FeState, Misfit, Shape, Verification
+from profiletool.files.design_json import load_design
+from profiletool.records.design import Misfit
+from profiletool.records.fe import Critical, FeState, Verification
+from profiletool.records.frames import Shape
 from profiletool.report.fe import (
     compared_text,
     fe_json,

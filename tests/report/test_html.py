@@ -14,9 +14,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from profiletool.options import options_of
 from profiletool.pipeline import Request
-from profiletool.records import Material
+from profiletool.records.request import Material
+from profiletool.report.asked import options_of
 from profiletool.report.dossier import Dossier
 from profiletool.report.film import Film, film_of, still_of
 from profiletool.report.html import report_html

@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from profiletool.artifacts import scene_of
-from profiletool.joints.kinematics import deform, misfit
+from profiletool.bending.kinematics import deform
+from profiletool.joints.misfit import misfit
 from profiletool.pipeline import Request, run
-from profiletool.records import Picture
-from profiletool.report.overlay import Scene, backdrop_of, draw_overlay
+from profiletool.records.picture import Picture
+from profiletool.report.overlay import draw_overlay
+from profiletool.report.scene import Scene, backdrop_of, scene_of
 
 GOLDEN = Path(__file__).parents[1] / "golden"
 WIDTH_PX = 700

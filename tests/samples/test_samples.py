@@ -8,7 +8,7 @@ import shapely
 from PIL import Image
 from scipy.ndimage import map_coordinates
 
-from profiletool.designfile import to_json
+from profiletool.files.design_json import to_json
 
 SAMPLES = Path(__file__).parents[2] / "samples"
 NAMES = ("bulb", "pear", "egg", "bottle", "vase")

@@ -6,19 +6,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from profiletool.designfile import load_design
-from profiletool.records import (
-    Design,
-    Fit,
-    FormulaRef,
-    Gauze,
-    Joint,
-    Misfit,
-    Pose,
-    Source,
-    Tube,
-)
-from profiletool.template.unroll import best_seam
+from profiletool.files.design_json import load_design
+from profiletool.joints.windows import best_seam
+from profiletool.records.design import Design, Fit, FormulaRef, Gauze, Joint, Misfit, Source, Tube
+from profiletool.records.frames import Pose
 
 
 def joint(number=1, F=19.0, openF=8.0, alpha=132.0, center=270.0, theta=30.0, at=10.0) -> Joint:

@@ -14,9 +14,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import LineString, Point, Polygon, STRtree, box
 
-from profiletool.joints.kinematics import Bend, deform
+from profiletool.bending.kinematics import Bend, deform
 from profiletool.profile.target import Reach, profile_of_line, profile_of_object
-from profiletool.records import Pose
+from profiletool.records.frames import Pose
 from profiletool.template.callouts import Callout, lettered
 from profiletool.template.draughting import CHAIN, dashed, dimension, no_line_twice
 from profiletool.template.drawing import Drawing, Line, polyline

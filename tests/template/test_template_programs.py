@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from profiletool.records import Design
+from profiletool.records.design import Design
 from profiletool.template.dxf import write_dxf
 from profiletool.template.kinds import Wish
 from profiletool.template.layout import Sheet, build_sheet

@@ -9,11 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import LineString, Polygon, STRtree, box
 
+from profiletool.joints.windows import best_seam
 from profiletool.template.drawing import Text
 from profiletool.template.kinds import KINDS, Wish
 from profiletool.template.layout import build_sheet
 from profiletool.template.strokes import GLYPHS, text_strokes, text_width
-from profiletool.template.unroll import best_seam
 from tests.template.designs import bulb, design_of, joint, long_tube, short_tube, skew, tight
 from tests.template.geometry import coincident, segments
 

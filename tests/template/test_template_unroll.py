@@ -8,18 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from profiletool.records import Gauze, Tube
-from profiletool.template.unroll import (
-    Roll,
-    best_seam,
-    off_mesh,
-    roll_of,
-    seam_at,
-    sheet_size,
-    slit_rows,
-    slits,
-    window_intervals,
-)
+from profiletool.joints.windows import best_seam, off_mesh, seam_at, slit_rows
+from profiletool.records.design import Gauze, Tube
+from profiletool.template.unroll import Roll, roll_of, sheet_size, slits, window_intervals
 from tests.template.designs import (
     bulb,
     design_of,

@@ -1,0 +1,1 @@
+"""Exports of a finite-element model to other programs."""

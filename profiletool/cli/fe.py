@@ -1,0 +1,210 @@
+"""The commands that run finite elements: parse, call, print, exit codes; nothing else."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from profiletool.cli.console import Debug, Json, Quiet, exit_codes, progress_bar, speaker
+from profiletool.errors import Infeasible, NotVerified, UnreadableInput, UsageError
+
+if TYPE_CHECKING:
+    from profiletool.records.fe import Verification
+
+_MOST_BAR = 20.0  # ten times what the tube bears
+
+Out = Annotated[
+    Path | None, typer.Option(help="Folder for tables, pictures and the deformed mesh.")
+]
+Force = Annotated[bool, typer.Option("--force", help="Replace an earlier folder of results.")]
+Pressure = Annotated[float, typer.Option(help="Highest pressure, bar; ten equal steps lead there.")]
+
+
+def joint(
+    openF: Annotated[float, typer.Option("--openF", help="Axial length of the cut, mm.")],
+    alpha: Annotated[float, typer.Option(help="Extent of the uncut sector, deg.")],
+    pressure: Pressure = 2.0,
+    alpha_center: Annotated[
+        float, typer.Option(help="Middle of the uncut sector, deg: 270 toward the object, 90 away.")
+    ] = 270.0,
+    diameter: Annotated[float, typer.Option(help="Outer diameter of the tube, mm.")] = 20.0,
+    wall: Annotated[float, typer.Option(help="Wall of the tube, mm.")] = 2.0,
+    out: Out = None,
+    force: Force = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Run finite elements of one joint, Root = F1 = 30 mm."""
+    with exit_codes(debug):
+        _check_run(pressure, out, force)
+        if not 0.0 <= alpha_center <= 360.0:
+            raise UsageError(f"--alpha-center must be 0 to 360, not {alpha_center:g}")
+        from profiletool import outputs
+        from profiletool.files import write
+        from profiletool.records.request import Material
+        from profiletool.report.fe import fe_json, fe_text
+        from profiletool.verify.run import DOWN, LYING, inflate, pressures_to
+        from profiletool.verify.tube import joint_actuator
+
+        material = Material(outer_diameter_mm=diameter, wall_mm=wall)
+        with _failures(UsageError), _bar(pressure, quiet) as progress:
+            actuator = joint_actuator(openF, alpha, alpha_center, material)
+            run = inflate(actuator, pressures_to(pressure), LYING, DOWN, progress=progress)
+        found = run.verification
+        what = (
+            f"one joint: openF {openF:g} mm, alpha_closed {alpha:g} deg, "
+            f"alpha_center {alpha_center:g} deg"
+        )
+        told = fe_json(found)
+        typer.echo(told if as_json else f"{what}\n{fe_text(found)}", nl=False)
+        if out is not None:
+            write.write_folder(out, outputs.fe_files(run, what, told), force)
+            speaker(quiet)(f"written: {out}")
+        _end(found)
+
+
+def finger(
+    pressure: Annotated[
+        float, typer.Option(help="Highest pressure, bar; steps of 0.1 bar lead there.")
+    ] = 2.3,
+    out: Out = None,
+    force: Force = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Run finite elements of the paper's three-joint finger (Table 2)."""
+    with exit_codes(debug):
+        _check_run(pressure, out, force)
+        from profiletool import outputs
+        from profiletool.files import write
+        from profiletool.report.fe import fe_json, fe_text, ranges_json, ranges_text
+        from profiletool.verify.run import DOWN, LYING, inflate, pressures_to
+        from profiletool.verify.tube import finger_actuator
+
+        with _failures(UsageError), _bar(pressure, quiet) as progress:
+            asked = pressures_to(pressure, 0.1)
+            run = inflate(finger_actuator(), asked, LYING, DOWN, progress=progress)
+        found = run.verification
+        told = fe_json(found, ranges_json(found))
+        text = f"the paper's finger (Table 2)\n{fe_text(found)}{ranges_text(found)}"
+        typer.echo(told if as_json else text, nl=False)
+        if out is not None:
+            title = "the paper's finger"
+            files = outputs.fe_files(run, title, told)
+            files |= outputs.trajectory_files(found, title)
+            write.write_folder(out, files, force)
+            speaker(quiet)(f"written: {out}")
+        _end(found)
+
+
+def verify(
+    file: Annotated[Path, typer.Argument(metavar="DESIGN.json", help="A design.json.")],
+    pressure: Annotated[
+        float | None,
+        typer.Option(help="Highest pressure, bar (default: the design's own); ten equal steps."),
+    ] = None,
+    out: Out = None,
+    force: Force = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Run finite elements of a whole actuator, and compare it with its target.
+
+    The target is taken from the shape.csv beside DESIGN.json, or from the drawing that the
+    design was made from.
+    """
+    with exit_codes(debug):
+        _check_run(pressure, out, force)
+        from profiletool import outputs
+        from profiletool.files import write
+        from profiletool.files.design_json import load_design
+        from profiletool.joints.misfit import misfit_to
+        from profiletool.report.dossier import formula_marks
+        from profiletool.report.fe import compared_text, fe_json, fe_text, misfit_json
+        from profiletool.subject.recall import target_of
+        from profiletool.verify.run import run_design
+
+        design = load_design(file)
+        most = design.pressure_bar if pressure is None else pressure
+        _check_run(most, None, force)
+        wrong = UnreadableInput if design.feasible else Infeasible
+        with _failures(wrong, f"{file}: "), _bar(most, quiet) as progress:
+            run = run_design(design, most, progress)
+        found = run.verification
+        target = target_of(design, file)
+        off = None if target is None else misfit_to(found.last.shape, target.points)
+        beside = None if target is None else target.file
+        told = fe_json(found, misfit_json(off, beside))
+        text = fe_text(found) + compared_text(design, found, off, beside)
+        typer.echo(told if as_json else text, nl=False)
+        if out is not None:
+            points = None if target is None else target.points
+            marks = formula_marks(design)
+            files = outputs.fe_files(run, design.source.file, told, points, marks)
+            write.write_folder(out, files, force)
+            speaker(quiet)(f"written: {out}")
+        _end(found)
+
+
+def _check_run(pressure: float | None, out: Path | None, force: bool) -> None:
+    """Refuse what cannot be run or written, before it takes any time."""
+    if pressure is not None and not (math.isfinite(pressure) and 0.0 < pressure <= _MOST_BAR):
+        raise UsageError(
+            f"--pressure must be above 0 and at most {_MOST_BAR:g} bar, not {pressure:g}"
+        )
+    if out is not None:
+        from profiletool.files import write
+
+        write.check_free(out, force)
+
+
+@contextmanager
+def _failures(
+    geometry: type[UsageError] | type[UnreadableInput] | type[Infeasible], where: str = ""
+) -> Iterator[None]:
+    """Turn what finite elements raise into our errors."""
+    from fem.errors import BadGeometry, NotConverged
+    from profiletool.verify.run import shortly
+
+    try:
+        yield
+    except BadGeometry as error:
+        raise geometry(f"{where}{error}") from error
+    except NotConverged as error:
+        raise NotVerified(f"{where}{shortly(error)}; ask for less with --pressure") from error
+
+
+@contextmanager
+def _bar(most: float, quiet: bool) -> Iterator[Callable[[float], None]]:
+    """Show how far the pressure has come, bar."""
+    with progress_bar("finite elements", quiet) as show:
+
+        def told(reached: float) -> None:
+            if show is not None:
+                show(reached / most)
+
+        yield told
+
+
+def _end(found: Verification) -> None:
+    """Say so where a run ended early.
+
+    Raises
+    ------
+    NotVerified
+    """
+    if found.critical is not None:
+        from profiletool.verify.run import said
+
+        raise NotVerified(
+            f"{said(found.critical)}, before the {found.asked_bar:.2f} bar asked for; "
+            "ask for less with --pressure"
+        )

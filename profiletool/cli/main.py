@@ -1,0 +1,84 @@
+"""The command line: two console scripts, the table of commands, and what bad usage ends in."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated, cast
+
+import typer
+
+from profiletool import __version__
+from profiletool.cli import derive, design, fe, table, template
+from profiletool.errors import UsageError
+
+app = typer.Typer(
+    name="profiletool",
+    help="From the picture of an object to a soft bending actuator that mirrors its shape.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+design_app = typer.Typer(
+    add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None
+)
+# What typer raises for words it cannot take; its own base classes have no public name.
+_BadUsage = cast(type[typer.BadParameter], typer.BadParameter.__bases__[0])
+
+
+def main() -> None:
+    """Run `profiletool`."""
+    _run(app)
+
+
+def design_main() -> None:
+    """Run `design`, which is `profiletool design`."""
+    _run(design_app)
+
+
+def _run(commands: typer.Typer) -> None:
+    """Run a command line; bad usage ends in one line too."""
+    try:
+        code = commands(standalone_mode=False)
+    except typer.Abort:
+        code = 130
+    except _BadUsage as problem:
+        code = UsageError.exit_code
+        message = problem.format_message().replace("Value error, ", "").rstrip(".")
+        # No arguments at all: the message is the help page.
+        typer.echo(message if "\n" in message else f"error: {message}; see --help", err=True)
+    sys.exit(code or 0)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"profiletool {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _profiletool(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+    ] = False,
+) -> None:
+    pass
+
+
+design_app.command(epilog="Example:  design bulb.png --height 107.5 --side left --out bulb")(
+    design.design
+)
+for _command, _example in (
+    (design.design, "profiletool design bulb.png --height 107.5 --out bulb"),
+    (fe.verify, "profiletool verify bulb_design/design.json"),
+    (fe.joint, "profiletool joint --openF 10 --alpha 84 --pressure 2.0"),
+    (fe.finger, "profiletool finger --out finger"),
+    (derive.derive, "profiletool derive --diameter 16 --wall 1.6 --out tube16.json"),
+    (table.table, "profiletool table --openF 6,8,10 --csv"),
+    (table.assign, "profiletool assign --openF 8,8,8,8,6,10 --theta 30,30,30,25,20,45"),
+    (template.template, "profiletool template bulb_design/design.json --variant strip"),
+    (template.sheet, "profiletool sheet --paper letter --out sheet.pdf"),
+):
+    app.command(epilog=f"Example:  {_example}")(_command)
+if __name__ == "__main__":
+    main()

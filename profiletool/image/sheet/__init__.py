@@ -1,0 +1,1 @@
+"""The printed sheet: perspective, lens and parallax taken out of a photograph."""

@@ -1,0 +1,86 @@
+"""What is known around an actuator that a bench has bent: a model that agrees with it there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from profiletool.bending.model import Model
+from profiletool.joints.correction.parameters import Parameters, facing_motion
+from profiletool.joints.correction.steps import Linear, built_step, free_step
+from profiletool.joints.misfit import badness, feet, residual_jacobian
+from profiletool.records.units import FloatArray
+
+_REACH = 3.0  # steps over the scale
+_ROUNDS = 5  # of a search
+
+
+@dataclass(frozen=True)
+class Known:
+    """What is known around a trial: its gaps and their derivatives, bent on by a model.
+
+    The model's gaps are shifted so that they and their derivatives agree with the bench's at the
+    trial; what remains of the model is how the derivatives change from there.
+    """
+
+    linear: Linear
+    parameters: Parameters
+    model: Model
+    points: FloatArray
+
+    def free(self, share: float) -> tuple[FloatArray, float]:
+        """Find the best vector within a share of the reach, and the badness it promises."""
+        reach = share * _REACH * self.linear.scale
+        return self._sought(lambda linear: free_step(linear, reach))
+
+    def built(self, step: FloatArray) -> tuple[FloatArray, float]:
+        """Find the same among multiples of ``step`` (size,)."""
+        reach = _REACH * self.linear.scale
+        # Coarse steps stay next to where the model holds best.
+        reach = np.where(step > 0.5 * self.linear.scale, np.minimum(step, reach), reach)
+        return self._sought(lambda linear: built_step(linear, step, reach))
+
+    def taught(self, vector: FloatArray, gap: FloatArray) -> Known:
+        """Correct the derivatives by the gaps that were found at another vector."""
+        missed = gap - self._near(self._bent(vector), vector).gap
+        way = (vector - self.linear.vector) / self.linear.scale
+        turned = np.outer(missed, way / self.linear.scale) / float(way @ way)
+        return replace(self, linear=replace(self.linear, jacobian=self.linear.jacobian + turned))
+
+    def _sought(self, step: Callable[[Linear], FloatArray]) -> tuple[FloatArray, float]:
+        base = self.linear
+        best, least = step(base), np.inf
+        at = best
+        for _ in range(_ROUNDS):
+            near = self._near(self._bent(at), at)
+            promised = float(badness(near.gap, base.interference_mm))
+            if promised < least:
+                best, least = at, promised
+            after = step(near)
+            if np.allclose(after, at, atol=1e-4 * base.scale.min()):
+                break
+            at = after
+        return best, least
+
+    @cached_property
+    def _base(self) -> tuple[FloatArray, FloatArray]:
+        return self._bent(self.linear.vector)
+
+    def _bent(self, vector: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Gaps and derivatives by the model alone."""
+        at = self.parameters.unpack(vector)
+        shape = self.model.shape(at.chain, at.pressure, at.pose, self.parameters.sign)
+        found = feet(shape.facing, self.points, self.parameters.sign)
+        motion = facing_motion(self.parameters, self.model, vector, shape)
+        return found.gap, residual_jacobian(found, motion)
+
+    def _near(self, bent: tuple[FloatArray, FloatArray], vector: FloatArray) -> Linear:
+        """Gaps and derivatives at another vector: the model's, shifted."""
+        base = self.linear
+        gap, jacobian = self._base
+        turned = base.jacobian - jacobian
+        off = base.gap - gap + turned @ (vector - base.vector)
+        return replace(base, vector=vector, gap=bent[0] + off, jacobian=bent[1] + turned)

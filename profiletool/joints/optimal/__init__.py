@@ -1,0 +1,1 @@
+"""The optimal choice of joints: dynamic programming, then polishing."""

@@ -1,0 +1,296 @@
+"""The joints of an actuator chosen as a whole, by a model: the best that one pressure allows.
+
+First the global optimum of a discretisation (`search`), for every number of joints and every
+pressure; then everything continuous is moved until the shape is best (`polish`). The fewest joints
+win whose shape lies within the tolerance.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from profiletool.bending.model import Chain, Model
+from profiletool.errors import Infeasible, NoObject
+from profiletool.joints.bounds import Limits, cuts_of, limits_of
+from profiletool.joints.correction.parameters import Actuator
+from profiletool.joints.optimal.lines import Discretisation
+from profiletool.joints.optimal.polish import Goal, Polished, at_bound, goal_of, judge, polish
+from profiletool.joints.optimal.search import MOST_JOINTS, Found, search
+from profiletool.joints.paper.pieces import cross, direction
+from profiletool.records.design import Misfit
+from profiletool.records.frames import Pose, Shape
+from profiletool.records.profile import Profile
+from profiletool.records.request import INTERFERENCE_MM, Material
+from profiletool.records.units import BAR_PER_MPA, FloatArray
+
+TOLERANCE_MM = 0.25
+DEPTH_SLACK_MM = 0.1  # beyond the interference, that nobody can see
+
+FINE = Discretisation()
+# Where no line on the profile will do: bridges over corners and hollows.
+WIDE = Discretisation(
+    step_mm=2.5,
+    turns_rad=(-0.2, -0.1, 0.0, 0.1, 0.2),
+    offsets_mm=(-0.3, 0.7, 2.0, 4.5),
+    least_pressure=0.16,
+)
+FAR = Discretisation(
+    step_mm=4.0,
+    turns_rad=(-0.3, -0.15, 0.0, 0.15, 0.3),
+    offsets_mm=(-4.0, -1.0, 2.0, 5.0, 9.0),
+    least_pressure=0.16,
+)
+_FAR_MM = 3.0
+_HOPEFUL = 3.0  # a path this many times the tolerance off may be polished into it
+_WORTH = 0.1  # of the tolerance: what one more joint must bring
+_RIVALS = 3  # paths polished for one number of joints
+_RUNS, _QUICK = 12, 4  # steps of a polish, and of one that only tells whether it is worth it
+_NEAR = 1.3  # times the tolerance, after a quick polish: worth a long one
+_MOST_POLISHED = 7  # numbers of joints that are polished
+_SWAPS = 3
+_CUTS = 3  # times that a profile too long for the tube is shortened
+_SHORTEST_MM = 40.0
+
+
+@dataclass(frozen=True)
+class TradeOff:
+    """What more joints and more pressure bring.
+
+    Attributes
+    ----------
+    pressure : (P,) MPa
+    rms_mm : (P, J) mm
+        Of the best discrete actuator of 1 to J joints; infinite where there is none.
+    polished_mm : (J,) mm
+        Of the best polished one; NaN for numbers of joints that were not polished.
+    """
+
+    pressure: FloatArray
+    rms_mm: FloatArray
+    polished_mm: FloatArray
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What is asked of the choice.
+
+    Attributes
+    ----------
+    tolerance_mm : float
+        RMS that is good enough.
+    interference_mm : float
+        How deep the tube may lie in the object.
+    count : int or None
+        Number of joints; as few as reach the tolerance where None.
+    base_free : bool
+        Whether the base may leave the profile's start tangent.
+    """
+
+    tolerance_mm: float = TOLERANCE_MM
+    interference_mm: float = INTERFERENCE_MM
+    count: int | None = None
+    base_free: bool = False
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The chosen actuator as the model bends it.
+
+    ``depth`` is how deep it lies in the object at most, mm; ``pressure`` in MPa.
+    """
+
+    chain: Chain
+    pressure: float
+    pose: Pose
+    shape: Shape
+    misfit: Misfit
+    depth: float
+    trade_off: TradeOff
+    limits: Limits
+
+
+def choose(profile: Profile, model: Model, material: Material, wish: Wish | None = None) -> Choice:
+    """Choose number, places, senses, cuts and sectors of the joints, pressure and base.
+
+    Parameters
+    ----------
+    profile : Profile
+    model : Model
+    material : Material
+    wish : Wish, optional
+
+    Raises
+    ------
+    profiletool.errors.NoObject
+        When the profile is straight.
+    profiletool.errors.Infeasible
+        When no joints follow it even roughly.
+    formula.errors.OutOfRange
+        When no cut in whole meshes is known to the model.
+    """
+    wish = wish or Wish()
+    away = cross(direction(profile.heading[0]), profile.points - profile.points[0])
+    if np.abs(away).max() <= wish.tolerance_mm:
+        raise NoObject(
+            f"the profile is straight to {wish.tolerance_mm:g} mm: there is nothing to bend; "
+            "take another --side or stretch, or a smaller --tolerance"
+        )
+    limits, cuts = limits_of(model, material, wish.base_free), cuts_of(model, material)
+    reached = profile
+    for _ in range(_CUTS):
+        # What lies farther down than the tube can be long is out of reach whatever it does.
+        reached = _first_part(reached, limits.max_length_mm)
+        found = _searches(reached, model, cuts, limits, wish)
+        goal = goal_of(reached, limits, wish.interference_mm)
+        best, polished = _fewest(found, model, goal, wish)
+        excess = best.actuator.chain.length - limits.max_length_mm
+        if excess <= 0.0:
+            break
+        reached = _first_part(reached, max(reached.length_mm - excess - 1.0, _SHORTEST_MM))
+    best = _swapped(best, model, goal, cuts)
+    count = len(best.actuator.chain.openF)
+    polished[count - 1] = np.fmin(polished[count - 1], best.misfit.rms_mm)
+    at = best.actuator
+    trade_off = TradeOff(found[0].pressure, _rms(found, reached), polished)
+    if reached is not profile:
+        best = judge(at, model, goal_of(profile, limits, wish.interference_mm))
+    return Choice(
+        at.chain, at.pressure, at.pose, best.shape, best.misfit, best.depth, trade_off, limits
+    )
+
+
+def _first_part(profile: Profile, length: float) -> Profile:
+    """Cut a profile off at an arc length."""
+    if profile.length_mm <= length:
+        return profile
+    kept = slice(0, int(np.searchsorted(profile.s, length)))
+    return replace(
+        profile,
+        **{
+            name: getattr(profile, name)[kept]
+            for name in ("points", "s", "heading", "curvature", "bridged")
+        },
+    )
+
+
+def _searches(
+    profile: Profile, model: Model, cuts: FloatArray, limits: Limits, wish: Wish
+) -> list[Found]:
+    """Search on the profile, and farther off it where that does not do."""
+    room = int(limits.max_length_mm / (cuts.min() + limits.wrap_mm)) + 1
+    most = min(wish.count or MOST_JOINTS, room)
+    found: list[Found] = []
+    for grid, enough in ((FINE, 2.0 * wish.tolerance_mm), (WIDE, _FAR_MM), (FAR, np.inf)):
+        found.append(search(profile, model, cuts, limits, wish.interference_mm, grid, most))
+        rms = _rms(found, profile)
+        if (rms[:, -1] if wish.count else rms).min() <= enough:
+            break
+    if not np.isfinite(rms).any():
+        raise Infeasible(
+            f"no joints of this tube follow the profile at {BAR_PER_MPA * limits.pressure[1]:.2f} "
+            "bar: it turns too fast; take a longer cut, more pressure or another stretch"
+        )
+    return found
+
+
+def _rms(found: list[Found], profile: Profile) -> FloatArray:
+    """Best RMS of several searches, on the pressures of the first: (P, J)."""
+    best = found[0].cost.copy()
+    for other in found[1:]:
+        # All end at the highest pressure.
+        top = best[-len(other.cost) :]
+        np.minimum(top, other.cost[-len(top) :], out=top)
+    return np.asarray(np.sqrt(best / profile.length_mm))
+
+
+def _fewest(
+    found: list[Found], model: Model, goal: Goal, wish: Wish
+) -> tuple[Polished, FloatArray]:
+    """Polish numbers of joints from below until one lies within the tolerance.
+
+    Where none does, one more joint must bring its worth.
+    """
+    rms = _rms(found, goal.profile).min(axis=0)
+    polished = np.full(len(rms), np.nan)
+    least, worth = float(rms.min()), _WORTH * wish.tolerance_mm
+    if wish.count is not None:
+        numbers = np.array([_known(rms, wish.count)])
+    else:
+        hopeful = rms <= max(_HOPEFUL * wish.tolerance_mm, 1.5 * least)
+        useful = np.arange(len(rms)) <= np.argmin(rms + 0.1 * worth * np.arange(len(rms)))
+        numbers = np.flatnonzero(hopeful & useful)[:_MOST_POLISHED] + 1
+    best: dict[int, Polished] = {}
+    for n in (int(n) for n in numbers):
+        best[n] = _best_of(found, model, goal, n, rivals=1, runs=_QUICK)
+        near = best[n].misfit.rms_mm <= _NEAR * wish.tolerance_mm
+        if near:
+            best[n] = _best_of(found, model, goal, n, _RIVALS)
+        polished[n - 1] = best[n].misfit.rms_mm
+        if near and good(best[n], wish):
+            return best[n], polished
+    chosen = min(best, key=lambda n: _score(best[n], goal) + worth * n)
+    full = _best_of(found, model, goal, chosen, _RIVALS)
+    polished[chosen - 1] = full.misfit.rms_mm
+    return full, polished
+
+
+def _known(rms: FloatArray, count: int) -> int:
+    """Give the number of joints nearest below ``count`` that there is a path for."""
+    known = np.flatnonzero(np.isfinite(rms[:count]))
+    return int(known[-1]) + 1 if known.size else count
+
+
+def good(found: Polished, wish: Wish) -> bool:
+    """Whether a shape is as good as asked for."""
+    deep = found.depth > wish.interference_mm + DEPTH_SLACK_MM
+    return found.misfit.rms_mm <= wish.tolerance_mm and not deep
+
+
+def _score(found: Polished, goal: Goal) -> float:
+    """RMS, and a share of what lies too deep, mm."""
+    return found.misfit.rms_mm + 0.1 * max(found.depth - goal.interference, 0.0)
+
+
+def _best_of(
+    found: list[Found], model: Model, goal: Goal, joints: int, rivals: int, runs: int = _RUNS
+) -> Polished:
+    """Polish the best paths of so many joints, of all searches and pressures."""
+    cost = [(c, k, p) for k, one in enumerate(found) for p, c in enumerate(one.cost[:, joints - 1])]
+    tried = []
+    for _, k, pressure in sorted(c for c in cost if np.isfinite(c[0]))[:rivals]:
+        start = found[k].actuator(pressure, joints, model, goal.profile, goal.limits)
+        tried.append(polish(start, model, goal, runs))
+    return min(tried, key=lambda polished: _score(polished, goal))
+
+
+def _swapped(best: Polished, model: Model, goal: Goal, cuts: FloatArray) -> Polished:
+    """Give joints whose alpha ends at a bound the next cut, as long as it helps."""
+    for _ in range(_SWAPS):
+        chain = best.actuator.chain
+        bound = at_bound(best.actuator, goal.limits)
+        tried = []
+        for k in np.flatnonzero(bound):
+            index = int(np.argmin(np.abs(cuts - chain.openF[k]))) - int(bound[k])
+            if 0 <= index < len(cuts):
+                openF = chain.openF.copy()
+                openF[k] = cuts[index]
+                actuator = replace(best.actuator, chain=replace(chain, openF=openF))
+                tried.append(polish(_fitting(actuator, goal.limits), model, goal, _QUICK))
+        better = min(tried, key=lambda polished: _score(polished, goal), default=best)
+        if _score(better, goal) >= _score(best, goal) - 1e-6:
+            break
+        best = better
+    return best
+
+
+def _fitting(actuator: Actuator, limits: Limits) -> Actuator:
+    """Move joints apart until their windows leave the least wrapped length."""
+    chain = actuator.chain
+    room = 0.5 * (chain.openF[1:] + chain.openF[:-1]) + limits.wrap_mm
+    F = np.maximum(np.diff(chain.centre), room)
+    root = max(float(chain.centre[0]), 0.5 * float(chain.openF[0]) + limits.wrap_mm)
+    centre = root + np.concatenate([[0.0], np.cumsum(F)])
+    length = float(chain.length + centre[-1] - chain.centre[-1])
+    return replace(actuator, chain=replace(chain, centre=centre, length=length))

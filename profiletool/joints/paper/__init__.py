@@ -1,0 +1,1 @@
+"""The paper's method: straight pieces, sectors, angles by look-up."""

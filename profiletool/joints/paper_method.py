@@ -1,0 +1,59 @@
+"""The paper's method: joints read off the profile one by one, angles looked up in the table."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from formula.errors import OutOfRange
+from formula.theta import Formula
+from profiletool.bending.kinematics import deform
+from profiletool.errors import Infeasible, NoObject, UsageError
+from profiletool.joints.paper.assign import joint_rules, lay_out, theta_table
+from profiletool.joints.paper.sectors import discretise
+from profiletool.joints.plan import Plan
+from profiletool.records.profile import Profile
+from profiletool.records.request import Request
+
+PAPER_TOLERANCE_MM = 1.0
+
+
+def paper_plan(
+    request: Request, profile: Profile, formula: Formula, say: Callable[[str], None]
+) -> Plan:
+    """Read joints off the profile and look their angles up, as the paper does.
+
+    Raises
+    ------
+    UsageError, NoObject, Infeasible
+    """
+    material = request.material
+    try:
+        table = theta_table(formula, material)
+    except OutOfRange as error:
+        raise UsageError(f"{error}; change --pitch, --max-pressure or --formula") from error
+    tolerance = request.tolerance_mm or PAPER_TOLERANCE_MM
+    rules = joint_rules(table, material, tolerance)
+    sectors = discretise(profile, rules, request.joints)
+    if not sectors:
+        raise NoObject(
+            f"the profile is straight to {tolerance:g} mm: there is nothing to bend; "
+            "take another --side or stretch, or a smaller --tolerance"
+        )
+    try:
+        layout = lay_out(profile, sectors, table, material)
+    except OutOfRange as error:
+        raise Infeasible(f"no pressure serves all joints: {error}") from error
+    say(f"joints: {len(sectors)} at {layout.pressure_bar:.2f} bar")
+
+    return Plan(
+        layout=layout,
+        by="formula",
+        bent=deform(
+            layout.bends(), layout.length_mm, material.radius_mm, layout.pose, profile.sign
+        ),
+        places=np.array([sector.centre for sector in sectors]),
+        sectors=sectors,
+        rules=rules,
+    )

@@ -1,0 +1,1 @@
+"""Drawings: DXF, SVG and CSV read to one profile in mm."""

@@ -1,0 +1,1 @@
+"""Frozen records that pass from stage to stage."""

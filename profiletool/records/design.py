@@ -1,0 +1,141 @@
+"""A design: what design.json holds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from formula.theta import RubberLaw
+from profiletool.records.frames import Pose, Side
+
+TOWARD_DEG, AWAY_DEG = 270.0, 90.0  # alpha_center of a joint that bends toward the object, or away
+
+
+@dataclass(frozen=True)
+class Joint:
+    """One joint of an actuator, as a row of the paper's Table 5.
+
+    theta is a magnitude; ``alpha_center_deg`` tells the direction (270 toward the object, 90
+    away from it). It is given as wanted, and as the formula, the joint response (where the joints
+    were chosen by it) and FE predict it. ``F_mm`` runs from this joint's centre to the next
+    one's, the last one's to the tube's end. ``centre_mm`` is the joint's place along the tube,
+    from the clamped end. ``stretch_fe`` is the largest principal stretch of the rubber there.
+    """
+
+    number: int
+    F_mm: float
+    openF_mm: float
+    alpha_closed_deg: float
+    alpha_center_deg: float
+    theta_target_deg: float
+    theta_formula_deg: float
+    theta_fe_deg: float | None
+    centre_mm: float
+    theta_response_deg: float | None = None
+    stretch_fe: float | None = None
+
+    @property
+    def sense(self) -> float:
+        """+1 where the joint bends toward the object, -1 away from it."""
+        return 1.0 if self.alpha_center_deg == TOWARD_DEG else -1.0
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where a design comes from.
+
+    ``origin_px`` is the object frame's origin in the picture (in the frontal view of a printed
+    sheet) once that is turned by ``rotated_deg``, counter-clockwise about its middle.
+    ``scale_error_share`` is by how much of itself a scale that was measured in the picture may be
+    off, about two standard deviations; ``confidence`` how far the silhouette is to be believed.
+    """
+
+    file: str
+    sha256: str
+    mm_per_px: float | None
+    scale_source: str
+    side: Side
+    profile_length_mm: float
+    bridged_share: float
+    origin_px: tuple[float, float] | None
+    rotated_deg: float = 0.0
+    symmetric: bool = False
+    scale_error_share: float | None = None
+    confidence: float | None = None
+
+
+@dataclass(frozen=True)
+class Tube:
+    """The tube; ``length_mm`` from the clamped end to the closed one, no rubber is the paper's."""
+
+    outer_diameter_mm: float
+    wall_mm: float
+    root_mm: float
+    length_mm: float
+    rubber: RubberLaw | None = None
+
+
+@dataclass(frozen=True)
+class Gauze:
+    """The gauze: ``seam_deg`` is the angular position of the glue and weld line."""
+
+    pitch_mm: float
+    thread_mm: float
+    turns: int
+    seam_deg: float
+
+
+@dataclass(frozen=True)
+class FormulaRef:
+    """The formula a design was made with."""
+
+    name: str
+    sha256: str
+
+
+@dataclass(frozen=True)
+class Misfit:
+    """Distance between the deformed object-facing line and the target profile."""
+
+    rms_mm: float
+    max_mm: float
+
+
+@dataclass(frozen=True)
+class Fit:
+    """The misfit as the formula, FE and the joint response predict it; None where they do not."""
+
+    formula: Misfit
+    fe: Misfit | None
+    response: Misfit | None = None
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """How far the bent object-facing line moves off itself when an input is off by a little.
+
+    ``joint`` is the one that matters most, None where the input is the whole tube's.
+    """
+
+    what: str
+    joint: int | None
+    rms_mm: float
+    max_mm: float
+
+
+@dataclass(frozen=True)
+class Design:
+    """A whole actuator: what design.json holds."""
+
+    source: Source
+    tube: Tube
+    gauze: Gauze
+    formula: FormulaRef
+    pressure_bar: float
+    joints: tuple[Joint, ...]
+    base_pose: Pose
+    fit: Fit
+    feasible: bool
+    verified: bool
+    warnings: tuple[str, ...]
+    method: str = "paper"
+    sensitivity: tuple[Sensitivity, ...] = ()

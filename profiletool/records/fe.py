@@ -1,0 +1,108 @@
+"""Results of finite elements: states, the critical point, the verification."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from profiletool.records.frames import Shape
+from profiletool.records.units import FloatArray
+
+
+@dataclass(frozen=True)
+class Critical:
+    """Where the path of equilibria ends: ``kind`` is "limit point" or "bifurcation"."""
+
+    kind: str
+    pressure_bar: float
+
+
+@dataclass(frozen=True)
+class FeState:
+    """An actuator at one pressure, by finite elements.
+
+    Attributes
+    ----------
+    pressure_bar : float
+    theta_deg : tuple of float
+        Of every joint, positive toward the object.
+    shape : Shape
+    phalanges : (joints + 1, 2) mm, object frame
+        Midpoints of the wrapped sectors, the clamped one first.
+    air_ml : float
+        Volume gained since rest, at the tube's own pressure.
+    joint_stretch : tuple of float
+        Largest principal stretch of the rubber at every joint.
+    largest_stretch, least_J : float
+        Of the rubber: largest principal stretch, smallest change of volume.
+    slack_share : float
+        Of the wrapped surface: where axial threads are slack.
+    thread_N : float
+        Largest force in a single thread.
+    residual, energy_error : float
+        Unbalanced forces over the pressure's; stored energy off the pressure's work, over it.
+    touches : bool
+        Whether the tube's surface meets itself; the model has no contact.
+    """
+
+    pressure_bar: float
+    theta_deg: tuple[float, ...]
+    shape: Shape
+    phalanges: FloatArray
+    air_ml: float
+    joint_stretch: tuple[float, ...]
+    largest_stretch: float
+    least_J: float
+    slack_share: float
+    thread_N: float
+    residual: float
+    energy_error: float
+    touches: bool
+
+
+@dataclass(frozen=True)
+class Verification:
+    """What finite elements say of an actuator.
+
+    Attributes
+    ----------
+    rest : FeState
+    states : tuple of FeState
+        At the asked pressures that were reached, in rising order.
+    asked_bar : float
+        The highest pressure asked for.
+    critical : Critical or None
+        What ended the path before that.
+    elements, nodes, dofs, newton_iterations : int
+    seconds : float
+    """
+
+    rest: FeState
+    states: tuple[FeState, ...]
+    asked_bar: float
+    critical: Critical | None
+    elements: int
+    nodes: int
+    dofs: int
+    newton_iterations: int
+    seconds: float
+
+    @property
+    def converged(self) -> bool:
+        """Whether every asked pressure was reached."""
+        return self.critical is None
+
+    @property
+    def last(self) -> FeState:
+        """The state at the highest pressure that was reached."""
+        return self.states[-1] if self.states else self.rest
+
+    @property
+    def pressures_bar(self) -> tuple[float, ...]:
+        """The pressures of the states."""
+        return tuple(state.pressure_bar for state in self.states)
+
+    @property
+    def theta_deg(self) -> tuple[tuple[float, ...], ...]:
+        """Angles of every joint, one for each state."""
+        columns = range(len(self.rest.theta_deg))
+        return tuple(tuple(state.theta_deg[k] for state in self.states) for k in columns)

@@ -1,0 +1,50 @@
+"""The target profile that a tube follows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from profiletool.records.frames import Side, side_sign
+from profiletool.records.units import FloatArray
+
+
+@dataclass(frozen=True)
+class Profile:
+    """The target of the object-facing line: the stretch that the tube can follow.
+
+    Attributes
+    ----------
+    points : (N, 2) mm, object frame, from the top down, 0.1 mm apart but for smoothing
+    s : (N,) mm
+        Arc length from the first point.
+    heading : (N,) rad
+        Direction of travel, counter-clockwise from +x, unwrapped.
+    curvature : (N,) 1/mm
+        Positive where the object is convex.
+    bridged : (N,) bool
+        Where the tube spans a groove of the object instead of touching it.
+    side : "left" or "right"
+    outline : (M, 2) mm, or None
+        The closed outline of the object; None for an open drawn profile.
+    """
+
+    points: FloatArray
+    s: FloatArray
+    heading: FloatArray
+    curvature: FloatArray
+    bridged: NDArray[np.bool_]
+    side: Side
+    outline: FloatArray | None
+
+    @property
+    def length_mm(self) -> float:
+        """Arc length of the whole profile."""
+        return float(self.s[-1])
+
+    @property
+    def sign(self) -> float:
+        """+1 where a convex turn is counter-clockwise (left side), else -1."""
+        return side_sign(self.side)

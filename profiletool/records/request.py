@@ -1,0 +1,172 @@
+"""The request: what `design` is asked for, and the tube that it may use."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from formula.theta import RubberLaw
+from profiletool.errors import UsageError
+from profiletool.records.frames import Side
+
+Box = tuple[float, float, float, float]  # x, y, width, height
+Point = tuple[float, float]  # x, y
+
+
+@dataclass(frozen=True)
+class ScaleRequest:
+    """What the user said about the scale; the first given wins, in this order.
+
+    Attributes
+    ----------
+    height_mm, width_mm : float or None
+        The object's full extent.
+    mm_per_px : float or None
+        The scale itself.
+    marker_mm : float or None
+        Side of the ArUco DICT_4X4_50 marker in the picture.
+    camera_distance_mm : float or None
+        From the camera's lens to the plane that a marker or the printed sheet lies in.
+    """
+
+    height_mm: float | None = None
+    width_mm: float | None = None
+    mm_per_px: float | None = None
+    marker_mm: float | None = None
+    camera_distance_mm: float | None = None
+
+
+def check_scale(request: ScaleRequest) -> None:
+    """Refuse lengths that are no lengths.
+
+    Raises
+    ------
+    UsageError
+    """
+    for option, value in {
+        "--height": request.height_mm,
+        "--width": request.width_mm,
+        "--mm-per-px": request.mm_per_px,
+        "--marker-mm": request.marker_mm,
+        "--camera-distance": request.camera_distance_mm,
+    }.items():
+        if value is not None and not (math.isfinite(value) and value > 0.0):
+            raise UsageError(f"{option} is {value:g}; give a positive number of millimetres")
+
+
+INTERFERENCE_MM = 0.3  # how deep a straight piece of tube may lie in the object as drawn
+
+
+@dataclass(frozen=True)
+class Material:
+    """The tube and gauze that a design starts from, and what they may be asked for.
+
+    ``rubber`` is None for the paper's.
+    """
+
+    outer_diameter_mm: float = 20.0
+    wall_mm: float = 2.0
+    root_mm: float = 10.0
+    pitch_mm: float = 2.0
+    thread_mm: float = 0.25
+    turns: int = 2
+    max_pressure_bar: float = 2.0
+    max_length_mm: float = 250.0
+    rubber: RubberLaw | None = None
+
+    @property
+    def radius_mm(self) -> float:
+        """Outer radius of the tube."""
+        return 0.5 * self.outer_diameter_mm
+
+
+@dataclass(frozen=True)
+class Look:
+    """How to look at a picture.
+
+    Attributes
+    ----------
+    box : (x, y, w, h), or None
+        Pixels of the picture, upright; everything outside is ground.
+    point : (x, y), or None
+        Pixels; inside the object.
+    mask : Path, or None
+        A picture of the object in white on black, or with transparent ground.
+    rotate : float or "auto"
+        Degrees counter-clockwise to turn the object by.
+    symmetric : bool
+        Whether to take the mean of the object's two sides.
+    """
+
+    box: Box | None = None
+    point: Point | None = None
+    mask: Path | None = None
+    rotate: float | Literal["auto"] = 0.0
+    symmetric: bool = False
+
+
+Method = Literal["optimal", "paper"]
+
+
+@dataclass(frozen=True)
+class Request:
+    """What `design` was asked for.
+
+    ``tolerance_mm`` None stands for the method's own, ``alpha_step_deg`` None for one thread.
+    """
+
+    file: Path
+    scale: ScaleRequest = field(default_factory=ScaleRequest)
+    look: Look = field(default_factory=Look)
+    side: Side = "left"
+    start_pct: float = 0.0
+    end_pct: float = 100.0
+    clearance_mm: float = 0.0
+    tolerance_mm: float | None = None
+    joints: int | None = None
+    method: Method = "optimal"
+    interference_mm: float = INTERFERENCE_MM
+    base_free: bool = False
+    alpha_step_deg: float | None = None
+    place_step_mm: float = 1.0
+    material: Material = field(default_factory=Material)
+    formula: Path | None = None
+    extrapolate: bool = False
+    verify: bool = False
+    refine: bool = True
+
+
+def check_request(request: Request) -> None:
+    """Refuse options that no design can be made with."""
+    check_scale(request.scale)
+    material = request.material
+    positive = {
+        "--diameter": material.outer_diameter_mm,
+        "--wall": material.wall_mm,
+        "--root": material.root_mm,
+        "--pitch": material.pitch_mm,
+        "--max-pressure": material.max_pressure_bar,
+        "--max-length": material.max_length_mm,
+        "--tolerance": 1.0 if request.tolerance_mm is None else request.tolerance_mm,
+    }
+    for option, value in positive.items():
+        if not (np.isfinite(value) and value > 0.0):
+            raise UsageError(f"{option} must be a number above 0, not {value:g}")
+    for option, value in {
+        "--clearance": request.clearance_mm,
+        "--interference": request.interference_mm,
+        "--alpha-step": request.alpha_step_deg or 0.0,
+        "--place-step": request.place_step_mm,
+    }.items():
+        if not (np.isfinite(value) and value >= 0.0):
+            raise UsageError(f"{option} must be 0 or more, not {value:g}")
+    if material.pitch_mm <= material.thread_mm:
+        raise UsageError(f"--pitch must be more than the thread, {material.thread_mm:g} mm")
+    if material.wall_mm >= material.radius_mm:
+        raise UsageError("--wall must be less than half of --diameter")
+    if not 0.0 <= request.start_pct < request.end_pct <= 100.0:
+        raise UsageError("--from and --to must be percentages with --from below --to")

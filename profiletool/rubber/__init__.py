@@ -1,0 +1,1 @@
+"""Rubbers: presets with their sources, and fits to test data."""

@@ -1,0 +1,1 @@
+"""The subject of a design: a picture or drawing, its scale and its profile."""

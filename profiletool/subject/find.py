@@ -1,0 +1,116 @@
+"""What a design is for: the object or drawing, its scale, and the profile to follow."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from profiletool.errors import NoObject, UsageError
+from profiletool.profile.drawing.load import SUFFIXES, load_vector
+from profiletool.profile.side import top_middle
+from profiletool.profile.target import Reach, profile_of_line, profile_of_object
+from profiletool.records.frames import Side
+from profiletool.records.picture import Picture, Scale, Silhouette
+from profiletool.records.profile import Profile
+from profiletool.records.request import Look, Request, ScaleRequest
+from profiletool.subject.photo import changed, see, turn_of
+
+_WRONG_SCALE = {
+    "height": {"top", "bottom"},
+    "width": {"left", "right"},
+    "sheet": {"left", "right", "top", "bottom"},
+}
+
+
+@dataclass(frozen=True)
+class Subject:
+    """The object that a design is for; picture, silhouette and origin only where there is one.
+
+    ``origin_px`` is the object frame's origin once the picture is turned by ``rotated_deg``,
+    counter-clockwise about its middle. ``notes`` say what the user should know of how it was seen.
+    """
+
+    picture: Picture | None
+    silhouette: Silhouette | None
+    scale: Scale
+    origin_px: tuple[float, float] | None
+    profile: Profile
+    rotated_deg: float = 0.0
+    notes: tuple[str, ...] = ()
+
+
+def find_subject(request: Request, say: Callable[[str], None]) -> Subject:
+    """Read the picture or drawing and find the profile that the tube shall follow.
+
+    Raises
+    ------
+    UnreadableInput, NoScale, NoObject, UsageError
+    """
+    reach = Reach(
+        side=request.side,
+        radius_mm=request.material.radius_mm,
+        clearance_mm=request.clearance_mm,
+        start_pct=request.start_pct,
+        end_pct=request.end_pct,
+    )
+    if request.file.suffix.lower() in SUFFIXES:
+        return _drawn_subject(request, reach, say)
+    seen = see(request.file, request.scale, request.look, say)
+    silhouette, scale = seen.silhouette, seen.scale
+    _check_frame(silhouette, scale, request.side)
+    k = scale.mm_per_px
+    origin = top_middle(silhouette.contour_px * [1.0, -1.0]) * [1.0, -1.0]
+    outline = (silhouette.contour_px - origin) * [k, -k]
+    width, height = np.ptp(outline, axis=0)
+    given = request.look.mask is not None
+    sure = "" if given else f" (sure to {100.0 * silhouette.confidence:.0f} %)"
+    error = scale.measured_error
+    within = "" if error is None else f", within {100.0 * error:.2g} %"
+    say(
+        f"object: {width:.1f} x {height:.1f} mm, found by {silhouette.method}{sure}, "
+        f"{k:.4g} mm per pixel from {scale.source}{within}"
+    )
+    reach = replace(reach, noise_mm=silhouette.noise_px * k, spacing_mm=k)
+    profile = profile_of_object(outline, reach)
+    place = float(origin[0]), float(origin[1])
+    return Subject(seen.picture, silhouette, scale, place, profile, seen.rotated_deg, seen.notes)
+
+
+def _drawn_subject(request: Request, reach: Reach, say: Callable[[str], None]) -> Subject:
+    drawn = load_vector(request.file)
+    look, points = request.look, drawn.points
+    if not drawn.closed and (look.rotate == "auto" or look.symmetric):
+        raise UsageError("--rotate auto and --symmetric need an object; this is an open profile")
+    turn = turn_of(points, look.rotate)
+    make = profile_of_object if drawn.closed else profile_of_line
+    profile = make(changed(points, turn, look.symmetric), reach)
+    kind = "closed outline" if drawn.closed else "open profile"
+    x, y = profile.points[0]
+    say(f"drawing: {kind}, {profile.length_mm:.1f} mm to follow from ({x:.1f}, {y:.1f}) down")
+    return Subject(None, None, Scale(1.0, "vector"), None, profile, turn)
+
+
+def _check_frame(silhouette: Silhouette, scale: Scale, side: Side) -> None:
+    """Refuse an object that is cut off where it matters."""
+    cut = silhouette.touches & ({side, "top"} | _WRONG_SCALE.get(scale.source, set()))
+    if cut:
+        raise NoObject(
+            f"the object runs out of the frame ({', '.join(sorted(cut))}); "
+            "take a picture with some ground all around it"
+        )
+
+
+def drawing_notes(request: Request, subject: Subject) -> Iterator[str]:
+    """Say what the user should know of how the picture was read."""
+    if subject.silhouette is None:
+        if request.scale != ScaleRequest():
+            yield "a drawing is in mm already: the scale options were not used"
+        if request.look != Look(rotate=request.look.rotate, symmetric=request.look.symmetric):
+            yield "a drawing needs no --box, --point or --mask: they were not used"
+        return
+    yield from subject.notes
+    if subject.silhouette.touches:
+        edges = ", ".join(sorted(subject.silhouette.touches))
+        yield f"the object runs out of the frame ({edges}); the profile ends there"

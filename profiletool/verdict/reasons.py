@@ -1,0 +1,153 @@
+"""Reasons why a design is infeasible."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from formula.theta import Formula
+from profiletool.joints.optimal.choose import TOLERANCE_MM
+from profiletool.joints.paper.assign import Layout
+from profiletool.joints.paper.pieces import Rules
+from profiletool.joints.paper.sectors import Sector
+from profiletool.records.design import Design
+from profiletool.records.profile import Profile
+from profiletool.records.request import Material, Request
+from profiletool.verdict.attempt import Attempt
+from profiletool.verdict.missed import Missed, missed
+from profiletool.verdict.notes import SLACK
+
+GOOD_SHARE = 0.01  # of the profile's length: RMS of a shape that is called good
+_SLACK_MM = 0.05  # that nobody can see
+
+
+def reasons_of(attempt: Attempt, misses: Sequence[Missed]) -> tuple[str, ...]:
+    """Reasons why an attempt is infeasible; none where it is a design that can be built."""
+    request, plan, profile = attempt.request, attempt.plan, attempt.profile
+    if plan.rules is None:
+        return not_good(attempt.design, profile, request, misses)
+    place = placer(request, profile)
+    return shortfalls(
+        plan.sectors, plan.layout, plan.rules, request.material, attempt.formula,
+        request.joints, place,
+    )  # fmt: skip
+
+
+def shortfalls(
+    sectors: Sequence[Sector],
+    layout: Layout,
+    rules: Rules,
+    material: Material,
+    formula: Formula,
+    count: int | None,
+    place: Callable[[float], str],
+) -> tuple[str, ...]:
+    """Reasons why a design is beyond the physical limits; none where it is within them.
+
+    Where a number of joints was asked for (``count``), a polygon off the tolerance is what the
+    user chose, not a limit. ``place`` says in words where an arc length on the profile is.
+    """
+    reasons = []
+    tube = (material.outer_diameter_mm, material.wall_mm)
+    if tube != (formula.outer_diameter_mm, formula.wall_mm):
+        reasons.append(
+            f'formula "{formula.name}" holds for a tube of {formula.outer_diameter_mm:g} mm with '
+            f"a wall of {formula.wall_mm:g} mm, not {tube[0]:g} and {tube[1]:g} mm; "
+            "give a formula for this tube with --formula"
+        )
+    if count is not None and len(sectors) < count:
+        reasons.append(f"there is no room for {count} joints on this profile, only {len(sectors)}")
+    for number, sector in enumerate(sectors, start=1):
+        found = [*_missing(sector, rules), *(_off(sector, rules) if count is None else ())]
+        reasons += [f"joint {number}, {place(sector.centre)}: {what}" for what in found]
+    if layout.length_mm > material.max_length_mm + SLACK:
+        reasons.append(
+            f"the tube would be {layout.length_mm:.1f} mm long, more than "
+            f"{material.max_length_mm:g} mm; shorten --root or the stretch (--from, --to), "
+            "or raise --max-length"
+        )
+    return tuple(reasons)
+
+
+def _missing(sector: Sector, rules: Rules) -> Iterator[str]:
+    """Say what one joint cannot do."""
+    if sector.blocked:
+        yield "there is nothing for it to bend; ask for fewer joints"
+    if np.degrees(sector.excess_turn_rad) > SLACK:
+        most = np.degrees(rules.theta_most_rad[np.searchsorted(rules.openF_mm, sector.openF_mm)])
+        yield (
+            f"a turn of {abs(np.degrees(sector.turn_rad)):.1f} deg is more than one joint reaches "
+            f"({most:.1f} deg with openF {sector.openF_mm:g} mm at the highest pressure); leave "
+            "such a corner out with --from or --to"
+        )
+    if sector.missing_mm > SLACK:
+        yield (
+            f"its cut of {sector.openF_mm:g} mm lacks {2.0 * sector.missing_mm:.1f} mm of room; "
+            "the profile turns too fast here for this tube: leave it out with --from or --to"
+        )
+
+
+def _off(sector: Sector, rules: Rules) -> Iterator[str]:
+    """Say where the polygon leaves the profile."""
+    if sector.deviation_mm > rules.tolerance_mm:
+        yield (
+            f"the polygon is {sector.deviation_mm:.2f} mm off the profile, more than the "
+            f"tolerance of {rules.tolerance_mm:g} mm; raise --tolerance, or leave this place out "
+            "with --from or --to"
+        )
+    elif sector.inward_mm > rules.interference_mm:
+        yield (
+            f"the polygon runs {sector.inward_mm:.2f} mm into the object, more than "
+            f"{rules.interference_mm:g} mm; give some --clearance, or leave this place out with "
+            "--from or --to"
+        )
+
+
+def placer(request: Request, profile: Profile) -> Callable[[float], str]:
+    """Say in words where an arc length on the profile is."""
+
+    def place(s: float) -> str:
+        share = request.start_pct + s / profile.length_mm * (request.end_pct - request.start_pct)
+        return f"{s:.0f} mm down the profile ({share:.0f} % of the side)"
+
+    return place
+
+
+def misses_of(attempt: Attempt) -> tuple[Missed, ...]:
+    """Stretches of the profile that an optimal plan's bent shape misses, each with its cause."""
+    plan, profile, request = attempt.plan, attempt.profile, attempt.request
+    if plan.choice is None or plan.model is None:
+        return ()
+    bent = replace(plan.choice, shape=attempt.best_shape)
+    return missed(
+        profile, bent, plan.model, request.material, TOLERANCE_MM, placer(request, profile)
+    )
+
+
+def not_good(
+    design: Design, profile: Profile, request: Request, places: Sequence[Missed]
+) -> tuple[str, ...]:
+    """Give reasons why an optimal plan is no design; none where it is good enough."""
+    fit = design.fit.fe or design.fit.response or design.fit.formula
+    limit = request.tolerance_mm or GOOD_SHARE * profile.length_mm
+    reasons = []
+    if fit.rms_mm > limit:
+        reasons.append(
+            f"the best shape found lies {fit.rms_mm:.2f} mm RMS and up to {fit.max_mm:.2f} mm off "
+            f"the profile, more than {limit:.2f} mm RMS"
+        )
+        reasons += [place.reason for place in places]
+    if request.joints is not None and len(design.joints) < request.joints:
+        reasons.append(
+            f"there is no room for {request.joints} joints on this profile, only "
+            f"{len(design.joints)}"
+        )
+    longest = request.material.max_length_mm
+    if design.tube.length_mm > longest + _SLACK_MM:
+        reasons.append(
+            f"the tube would be {design.tube.length_mm:.1f} mm long, more than {longest:g} mm; "
+            "shorten the stretch (--from, --to), or raise --max-length"
+        )
+    return tuple(reasons)

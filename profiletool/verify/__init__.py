@@ -1,0 +1,1 @@
+"""Verification: designs as finite-element models, run and compared."""

@@ -1,0 +1,109 @@
+"""Finite elements in the loop: the bench on which `profiletool.joints.correct` bends actuators.
+
+Every state but the first is found from a similar actuator's, and the sensitivities are FE's own,
+by direct differentiation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from fem.actuator import Actuator as Tube
+from fem.errors import BadGeometry, NotConverged
+from fem.mesh import Mesh
+from fem.sensitivity import Rate, Sensitivities, flow_to, sensitivities
+from fem.solve import Solution, solve, solve_near
+from profiletool.joints.correction.correct import CannotBend, Trial
+from profiletool.joints.correction.parameters import Actuator
+from profiletool.records.frames import Shape, base_axes
+from profiletool.records.request import Material
+from profiletool.records.units import FloatArray
+from profiletool.verify.lines import on_line, shape_of
+from profiletool.verify.run import ended, said, shortly
+from profiletool.verify.tube import tube_of
+
+
+class FeBench:
+    """Bends by finite elements of the whole actuator."""
+
+    def __init__(self, material: Material) -> None:
+        self._material = material
+        self._rates: tuple[Solution, Sensitivities] | None = None  # the last ones found
+
+    def bend(
+        self, actuator: Actuator, sign: float, near: Trial[Solution] | None
+    ) -> tuple[Shape, Solution]:
+        """Bend an actuator, from a similar one's state where that leads there."""
+        try:
+            tube = tube_of(actuator.chain, self._material)
+            solution = self._solved(tube, near, actuator.pressure)
+        except NotConverged as error:
+            raise CannotBend(shortly(error), error.reached) from error
+        except BadGeometry as error:
+            raise CannotBend(f"cannot be modelled: {error}", 0.0) from error
+        if solution.critical is not None:
+            raise CannotBend(said(ended(solution.critical)), solution.critical.pressure)
+        return shape_of(solution.mesh, solution.states[-1], actuator.pose, sign), solution
+
+    def motion(self, trial: Trial[Solution]) -> FloatArray:
+        """Motion of the object-facing line's points by each number: (size, N, 2)."""
+        rates = rates_of(trial)
+        self._rates = (trial.state, rates)
+        return motion_of(trial, rates)
+
+    def _solved(self, tube: Tube, near: Trial[Solution] | None, pressure: float) -> Solution:
+        if near is not None:
+            known, flow = near.state, None
+            if self._rates is not None and self._rates[0] is known:
+                rise = pressure - known.states[-1].pressure
+                flow = flow_to(self._rates[1], known.mesh.actuator, tube, rise)
+            try:
+                return solve_near(tube, known, pressure, flow=flow)
+            except NotConverged:
+                pass  # too far off: all the way from rest, then
+        return solve(tube, [pressure])
+
+
+def rates_of(trial: Trial[Solution]) -> Sensitivities:
+    """Differentiate a trial's state."""
+    solution = trial.state
+    x, pressure = solution.states[-1].x, trial.actuator.pressure
+    return sensitivities(solution.mesh, x, pressure, angles=False)
+
+
+def motion_of(trial: Trial[Solution], rates: Sensitivities) -> FloatArray:
+    """Differentiate the object-facing line's points by each number of the vector: (size, N, 2)."""
+    parameters, shape = trial.parameters, trial.shape
+    solution, at = trial.state, trial.actuator
+    heading = np.radians(at.pose.heading_deg)
+    along, outward = base_axes(float(heading), parameters.sign)
+
+    def placed(rate: Rate) -> FloatArray:
+        return placed_motion(rate, shape, solution.mesh, (along, outward))
+
+    grows = parameters.root_grows(trial.vector)
+    slide = placed(rates.wrapped[0]) if grows else np.broadcast_to(along, shape.facing.shape)
+    rows = [*_inner(rates, placed), slide, placed(rates.pressure)]
+    if parameters.limits.base_free:
+        arm = shape.facing - parameters.start
+        rows.append(parameters.sign * np.column_stack([-arm[:, 1], arm[:, 0]]))
+        rows.append(np.broadcast_to(outward, shape.facing.shape))
+    return np.stack(rows)
+
+
+def _inner(rates: Sensitivities, placed: Callable[[Rate], FloatArray]) -> list[FloatArray]:
+    return [placed(rate) for rate in (*rates.alpha, *rates.wrapped[1:-1])]
+
+
+def placed_motion(
+    rate: Rate, shape: Shape, mesh: Mesh, axes: tuple[FloatArray, FloatArray]
+) -> FloatArray:
+    """Motion of a line's points in the object frame per unit: (N, 2).
+
+    ``axes`` are unit vectors along the clamped tube and away from the object.
+    """
+    moved = on_line(mesh, rate.moved, shape.along)
+    placed: FloatArray = moved[:, 2, None] * axes[0] + moved[:, 1, None] * axes[1]
+    return placed

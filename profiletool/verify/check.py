@@ -1,0 +1,72 @@
+"""The check of a design: its finite-element run, angles, shape and misfit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fem.errors import BadGeometry, NotConverged
+from profiletool.joints.misfit import misfit
+from profiletool.records.design import Design
+from profiletool.records.frames import Shape
+from profiletool.records.profile import Profile
+from profiletool.verify.run import Progress, Run, run_design, said, shortly
+
+DECIMALS = 4  # of what FE puts into design.json: far above the noise of the last bits
+
+
+@dataclass(frozen=True)
+class Check:
+    """A design after its finite-element run.
+
+    Attributes
+    ----------
+    design : Design
+        Verified where the run reached the operating pressure.
+    run : Run or None
+        None where there is not even a part of it.
+    failure : str or None
+        Why the design is not verified.
+    """
+
+    design: Design
+    run: Run | None
+    failure: str | None
+
+    @property
+    def shape(self) -> Shape | None:
+        """The tube at the operating pressure; None where FE did not get there."""
+        done = self.run is not None and self.failure is None
+        return self.run.verification.last.shape if done and self.run is not None else None
+
+
+def check(design: Design, profile: Profile, progress: Progress | None = None) -> Check:
+    """Verify a design at its operating pressure; a failure leaves it unverified and says why."""
+    try:
+        run = run_design(design, design.pressure_bar, progress)
+    except NotConverged as error:
+        return Check(design, None, shortly(error))
+    except BadGeometry as error:
+        return Check(design, None, f"cannot be modelled: {error}")
+    found = run.verification
+    if found.critical is not None:
+        return Check(design, run, said(found.critical))
+    by_joint = zip(design.joints, found.last.theta_deg, found.last.joint_stretch, strict=True)
+    joints = tuple(
+        replace(
+            joint,
+            theta_fe_deg=round(magnitude(theta, joint.alpha_center_deg), DECIMALS),
+            stretch_fe=round(stretch, DECIMALS - 1),
+        )
+        for joint, theta, stretch in by_joint
+    )
+    off = misfit(found.last.shape, profile)
+    off = replace(off, rms_mm=round(off.rms_mm, DECIMALS), max_mm=round(off.max_mm, DECIMALS))
+    fit = replace(design.fit, fe=off)
+    return Check(replace(design, joints=joints, fit=fit, verified=True), run, None)
+
+
+def magnitude(theta_deg: float, center_deg: float) -> float:
+    """Turn a signed angle into the one toward the uncut sector: negative only if it bends off."""
+    return -theta_deg if np.sin(np.radians(center_deg)) > 1e-12 else theta_deg

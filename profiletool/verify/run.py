@@ -1,0 +1,165 @@
+"""Finite-element runs of actuators, from pressures to records."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fem.actuator import Actuator
+from fem.errors import NotConverged
+from fem.loadpath import Critical as FemCritical
+from fem.mesh import Mesh
+from fem.solve import Solution, State, solve
+from profiletool.records.design import Design
+from profiletool.records.fe import Critical, FeState, Verification
+from profiletool.records.frames import Pose, side_sign
+from profiletool.records.units import BAR_PER_MPA, FloatArray
+from profiletool.verify.lines import Placement, placed_shape
+from profiletool.verify.tube import actuator_of
+
+STEPS = 10  # pressures that are reported where nothing else is asked for
+LYING = Pose(0.0, 0.0, 0.0)  # an actuator without an object lies along x ...
+DOWN = -1.0  # ... and bends down
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True)
+class Run:
+    """A finite-element run: what it says, and the solution it says it from."""
+
+    verification: Verification
+    solution: Solution
+
+
+def pressures_to(pressure_bar: float, step_bar: float | None = None) -> tuple[float, ...]:
+    """Give the pressures up to one, bar: `STEPS` equal steps, or steps of a given size."""
+    if step_bar is None:
+        return tuple(pressure_bar * (k + 1) / STEPS for k in range(STEPS))
+    count = int(np.ceil(pressure_bar / step_bar - 1e-9))
+    return (*(round(step_bar * k, 9) for k in range(1, count)), pressure_bar)
+
+
+def inflate(
+    actuator: Actuator,
+    pressures_bar: Sequence[float],
+    pose: Pose,
+    sign: float,
+    *,
+    thread_pitch_mm: float = 1.0,
+    threads: int = 2,
+    progress: Progress | None = None,
+) -> Run:
+    """Run finite elements from rest through the given pressures.
+
+    Parameters
+    ----------
+    actuator : Actuator
+    pressures_bar : sequence of float
+    pose : Pose
+        Of the object-facing line at the clamped end.
+    sign : float
+        +1 where a turn toward the object is counter-clockwise (see `Profile.sign`).
+    thread_pitch_mm : float
+        Width that a single thread stands for, all turns of the gauze together.
+    threads : {1, 2}
+        Of the computer, not of the gauze.
+    progress : callable, optional
+        Takes the pressure reached so far, bar.
+
+    Raises
+    ------
+    fem.errors.NotConverged
+        When no equilibrium is found at some pressure.
+    """
+
+    def told(pressure: float) -> None:
+        if progress is not None:
+            progress(BAR_PER_MPA * pressure)
+
+    asked = [p / BAR_PER_MPA for p in pressures_bar]
+    found = solve(actuator, asked, threads=threads, progress=told)
+    # Beyond half a turn the angles go on, and do not start again from the other side.
+    angles = np.unwrap([np.degrees(s.theta) for s in found.states], period=360.0, axis=0)
+    place = Placement(pose, sign, actuator.radius)
+    rest, *loaded = (
+        _state(found, state, theta, place, thread_pitch_mm)
+        for state, theta in zip(found.states, angles, strict=True)
+    )
+    mesh = found.mesh
+    return Run(
+        Verification(
+            rest=rest,
+            states=tuple(loaded),
+            asked_bar=max(pressures_bar),
+            critical=None if found.critical is None else ended(found.critical),
+            elements=mesh.elements,
+            nodes=mesh.nodes,
+            dofs=_dofs(mesh),
+            newton_iterations=found.newton_iterations,
+            seconds=found.seconds,
+        ),
+        found,
+    )
+
+
+def run_design(design: Design, pressure_bar: float, progress: Progress | None = None) -> Run:
+    """Run a design up to a pressure, in its own base pose.
+
+    Raises
+    ------
+    fem.errors.NotConverged, fem.errors.BadGeometry
+    """
+    return inflate(
+        actuator_of(design),
+        pressures_to(pressure_bar),
+        design.base_pose,
+        side_sign(design.source.side),
+        thread_pitch_mm=design.gauze.pitch_mm / design.gauze.turns,
+        progress=progress,
+    )
+
+
+def shortly(error: NotConverged) -> str:
+    """Say in a few words how far a run came that did not converge."""
+    return f"no equilibrium found beyond {BAR_PER_MPA * error.reached:.2f} bar"
+
+
+def ended(critical: FemCritical) -> Critical:
+    """Give what ended a run in bar."""
+    return Critical(critical.kind, BAR_PER_MPA * critical.pressure)
+
+
+def said(critical: Critical) -> str:
+    """Say what ended a run."""
+    return f"{critical.kind} at {critical.pressure_bar:.2f} bar"
+
+
+def _dofs(mesh: Mesh) -> int:
+    """Count the unknowns: free nodes between the clamped ring and the plug, and the plug's own."""
+    ring, mid = (int((~held).sum()) for held in (mesh.fixed_ring, mesh.fixed_mid))
+    return (mesh.layers - 1) * ring + mesh.layers * mid + (3 if mesh.half else 6)
+
+
+def _state(
+    found: Solution, state: State, theta_deg: FloatArray, place: Placement, pitch: float
+) -> FeState:
+    return FeState(
+        pressure_bar=BAR_PER_MPA * state.pressure,
+        theta_deg=tuple(theta_deg.tolist()),
+        shape=placed_shape(found.mesh, state, place),
+        phalanges=place(np.array([sector.centre for sector in state.sectors])),
+        air_ml=1e-3 * (state.volume - found.states[0].volume),
+        joint_stretch=tuple(
+            float(state.stretches[found.mesh.segment == 2 * k + 1].max(initial=1.0))
+            for k in range(len(theta_deg))
+        ),
+        largest_stretch=state.largest_stretch,
+        slack_share=state.threads.slack_share,
+        least_J=state.least_J,
+        thread_N=pitch * max(state.threads.axial_force, state.threads.hoop_force),
+        residual=state.residual,
+        energy_error=state.energy_error,
+        touches=state.touches,
+    )
