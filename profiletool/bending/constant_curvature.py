@@ -17,7 +17,7 @@ _SLACK_DEG = 1e-9
 
 
 class FormulaModel:
-    """A `profiletool.joints.model.Model` by a formula: mm, rad, MPa outside, deg and bar inside.
+    """A `profiletool.bending.model.Model` by a formula: mm, rad, MPa outside, deg and bar inside.
 
     Attributes
     ----------
@@ -60,7 +60,7 @@ class FormulaModel:
     def line(self, openF: float, alpha: float, pressure: float, sense: float) -> FloatArray:
         """Object-facing line of a joint in a long straight tube: (N, 3) of x, y, heading.
 
-        In the frame of `profiletool.joints.model.Model.line`.
+        In the frame of `profiletool.bending.model.Model.line`.
         """
         turn = sense * float(self.theta(openF, alpha, pressure))
         length = openF + float(facing_stretch(turn, self.radius))

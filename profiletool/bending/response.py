@@ -3,7 +3,7 @@
 Finite elements of single joints, tabulated over alpha, openF and pressure, give what a joint adds
 to a long straight tube: fields along the tube of the turn of the lines across it, of the midline's
 stretch and of its height. An actuator is the sum of its joints' fields, mirrored for joints that
-bend away from the object, scaled for their neighbours (`profiletool.joints.neighbours`) and
+bend away from the object, scaled for their neighbours (`profiletool.bending.neighbours`) and
 integrated along the tube.
 """
 
@@ -30,7 +30,7 @@ _ROUNDS = 5  # of Newton's method for alpha: the first guess is good to a few de
 
 @dataclass(frozen=True)
 class Response:
-    """A `profiletool.joints.model.Model` by tabulated finite elements; mm, rad, MPa.
+    """A `profiletool.bending.model.Model` by tabulated finite elements; mm, rad, MPa.
 
     Other tubes than the tabulated one follow from dimensional analysis, see `scaled`.
 
@@ -142,7 +142,7 @@ class Response:
     def line(self, openF: float, alpha: float, pressure: float, sense: float) -> FloatArray:
         """Object-facing line of a joint in a long straight tube: (N, 3) of x, y, heading.
 
-        In the frame of `profiletool.joints.model.Model.line`. It begins and ends 25 mm outside the
+        In the frame of `profiletool.bending.model.Model.line`. It begins and ends 25 mm outside the
         cut; the stretch that a wrapped tube has without joints is left out.
         """
         o, p = self._own(openF, pressure)

@@ -1,6 +1,6 @@
 """Tabulated fields of single joints and what neighbours do to them: the response's data.
 
-All numbers are those of one tube, the *tabulated* one; `profiletool.joints.response` carries them
+All numbers are those of one tube, the *tabulated* one; `profiletool.bending.response` carries them
 over to others.
 
 Glossary

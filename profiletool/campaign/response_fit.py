@@ -3,7 +3,7 @@
 Glossary
 --------
 S : states (pressures) of a run;  N : places along the tube;  n : joints
-fields : see `profiletool.joints.response_table`
+fields : see `profiletool.bending.response_table`
 """
 
 from __future__ import annotations

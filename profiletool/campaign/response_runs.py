@@ -1,7 +1,7 @@
 """Finite-element runs for the joint response, its fit and its check.
 
-Run as ``python -m profiletool.response_campaign --out FILE``. Single joints between long wrapped
-sectors give the table; pairs, joints near the ends and random actuators give the neighbours'
+Run as ``python -m profiletool.campaign.response_runs --out FILE``. Single joints between long
+wrapped sectors give the table; pairs, joints near the ends and random actuators give the neighbours'
 influence; random actuators of their own check the result. Runs that are kept with ``--raw`` are
 not done again.
 """
@@ -209,7 +209,7 @@ def _ended(runs: dict[str, list[Lines]]) -> Iterator[str]:
 
 def main() -> None:
     """Run the campaign, fit, check and write the data file."""
-    parser = argparse.ArgumentParser(prog="python -m profiletool.response_campaign")
+    parser = argparse.ArgumentParser(prog="python -m profiletool.campaign.response_runs")
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--check", type=int, default=60, help="random actuators")
@@ -231,7 +231,7 @@ def main() -> None:
         "joints_independent": check(runs["check"], alone).summary(),
     }
     about = {
-        "made_by": "python -m profiletool.response_campaign",
+        "made_by": "python -m profiletool.campaign.response_runs",
         "date": date.today().isoformat(),
         "runs": {name: len(lines) for name, lines in runs.items()},
         "ended_early": list(_ended(runs)),

@@ -115,7 +115,7 @@ _SETTINGS: Mapping[str, _Settings] = {
 
 
 def actuator_of(task: Task) -> Actuator:
-    """Model a joint; at a diameter of 20 mm it is that of `profiletool.verify.joint_actuator`.
+    """Model a joint; at a diameter of 20 mm it is that of `profiletool.verify.tube.joint_actuator`.
 
     All lengths but those asked for go with the diameter: the plug, and the pitch of single
     threads, which run along the bricks' edges.

@@ -107,8 +107,8 @@ def parse_rubber(text: str) -> Rubber:
     ----------
     text : str
         The name of a preset; ``mooney-rivlin:C10,C01,nu`` or ``neo-hooke:C10,nu`` (MPa, MPa, -);
-        or the path of a CSV file of uniaxial test data (`profiletool.rubber_fit.read_uniaxial`),
-        which is fitted with nu = 0.46.
+        or the path of a CSV file of uniaxial test data
+        (`profiletool.rubber.uniaxial.read_uniaxial`), which is fitted with nu = 0.46.
 
     Raises
     ------

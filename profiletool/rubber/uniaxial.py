@@ -188,7 +188,7 @@ def read_uniaxial(data: bytes) -> tuple[FloatArray, FloatArray]:
     Parameters
     ----------
     data : bytes
-        Text as `profiletool.columns.read_lines` takes it, of the columns stretch and nominal
+        Text as `profiletool.files.columns.read_lines` takes it, of the columns stretch and nominal
         stress in MPa. A header line may name them in any order and among others: ``stretch`` or
         ``strain`` (a fraction), and ``stress``, ``stress_MPa`` or ``stress_kPa``.
 

@@ -1,4 +1,4 @@
-"""Finite elements in the loop: the bench on which `profiletool.joints.correct` bends actuators.
+"""Finite elements in the loop: a forward model for `profiletool.joints.correction.correct`.
 
 Every state but the first is found from a similar actuator's, and the sensitivities are FE's own,
 by direct differentiation.

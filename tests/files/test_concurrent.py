@@ -27,7 +27,7 @@ WRITER = """
 import sys
 from pathlib import Path
 from profiletool.errors import ProfiletoolError
-from profiletool.output import write_file, write_folder
+from profiletool.files.write import write_file, write_folder
 place, whose, times, force, as_file = Path(sys.argv[1]), sys.argv[2], *map(int, sys.argv[3:])
 print("ready", flush=True)
 sys.stdin.readline()

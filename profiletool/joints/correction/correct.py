@@ -1,7 +1,7 @@
 """An actuator corrected until its bent shape lies on the profile, whoever bends it.
 
-Gauss-Newton on the numbers of `profiletool.joints.parameters`: a bench gives the bent shape and
-what each number does to it. First all numbers are free; then they take the steps that can be
+Gauss-Newton on the numbers of `profiletool.joints.correction.parameters`: a bench gives the bent
+shape and what each number does to it. First all numbers are free; then they take the steps that can be
 built, and what stays free follows.
 """
 

@@ -31,7 +31,7 @@ class Linear:
     Attributes
     ----------
     gap : (M,) mm
-        See `profiletool.joints.parameters.Feet`.
+        See `profiletool.joints.correction.parameters.Feet`.
     jacobian : (M, q)
     vector, centre, low, high, scale : (q,)
         Where the gaps were found, where better ones are looked for nearby, the bounds, and changes

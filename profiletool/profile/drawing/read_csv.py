@@ -19,7 +19,8 @@ def read_csv(data: bytes) -> Chain:
     Parameters
     ----------
     data : bytes
-        Text as `profiletool.columns.read_lines` takes it; one header line of words is skipped.
+        Text as `profiletool.files.columns.read_lines` takes it; one header line of words is
+        skipped.
 
     Returns
     -------

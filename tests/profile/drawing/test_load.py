@@ -196,7 +196,7 @@ def test_too_large(load, monkeypatch):
 
 def test_importing_is_cheap():
     code = (
-        "import sys, profiletool.profile.vector\n"
+        "import sys, profiletool.profile.drawing.load\n"
         "print([m for m in ('ezdxf', 'svgelements', 'shapely', 'scipy') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
