@@ -18,8 +18,9 @@ from profiletool.joints.plan import Plan
 from profiletool.joints.windows import best_seam
 from profiletool.records.design import Design, Fit, FormulaRef, Gauze, Source, Tube
 from profiletool.records.frames import Shape
+from profiletool.records.options import check_request
 from profiletool.records.profile import Profile
-from profiletool.records.request import Request, check_request
+from profiletool.records.request import Request
 from profiletool.subject.find import Subject, find_subject
 from profiletool.verdict.attempt import Attempt
 from profiletool.verdict.missed import Missed
@@ -74,7 +75,7 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
     attempt = _attempt(request, subject, formula, say, progress)
     lower = _lower(attempt)
     if lower is not None:
-        say(f"once more below {lower.material.max_pressure_bar:.2f} bar, where FE is stable")
+        say(f"once more below {lower.tube.max_pressure_bar:.2f} bar, where FE is stable")
         second = _attempt(lower, subject, formula, say, progress)
         attempt = second if second.design.verified else attempt
     attempt = replace(attempt, request=request)
@@ -97,7 +98,7 @@ def _attempt(
     say: Callable[[str], None],
     progress: Progress | None,
 ) -> Attempt:
-    profile, material = subject.profile, request.material
+    profile, material = subject.profile, request.tube
     if request.method == "optimal":
         bench = FeBench(material) if request.verify and request.refine else None
         plan = optimal_plan(request, profile, formula, say, bench)
@@ -121,14 +122,14 @@ def _lower(attempt: Attempt) -> Request | None:
     if ended is None or request.method != "optimal" or not request.refine:
         return None
     bar = _STABLE_SHARE * ended.pressure_bar
-    return replace(request, material=replace(request.material, max_pressure_bar=bar))
+    return replace(request, tube=replace(request.tube, max_pressure_bar=bar))
 
 
 def _design(
     request: Request, subject: Subject, formula: Formula, plan: Plan, shape: Shape
 ) -> Design:
     """Gather the design; what the user should know of it comes later."""
-    material, profile, layout = request.material, subject.profile, plan.layout
+    material, profile, layout = request.tube, subject.profile, plan.layout
     response = None if plan.by == "formula" else misfit(plan.bent, profile)
     seam = best_seam(layout.joints).seam_deg
     gauze = Gauze(material.pitch_mm, material.thread_mm, material.turns, seam)

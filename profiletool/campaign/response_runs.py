@@ -1,9 +1,9 @@
 """Finite-element runs for the joint response, its fit and its check.
 
 Run as ``python -m profiletool.campaign.response_runs --out FILE``. Single joints between long
-wrapped sectors give the table; pairs, joints near the ends and random actuators give the neighbours'
-influence; random actuators of their own check the result. Runs that are kept with ``--raw`` are
-not done again.
+wrapped sectors give the table; pairs, joints near the ends and random actuators give the
+neighbours' influence; random actuators of their own check the result. Runs that are kept with
+``--raw`` are not done again.
 """
 
 from __future__ import annotations

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
+from profiletool.records.request import Side
 from profiletool.records.units import FloatArray
 
 
@@ -14,9 +14,6 @@ def base_axes(heading: float, sign: float) -> tuple[FloatArray, FloatArray]:
     """Give unit vectors along the tube and away from the object, (2,) each."""
     cos, sin = np.cos(heading), np.sin(heading)
     return np.array([cos, sin]), sign * np.array([sin, -cos])
-
-
-Side = Literal["left", "right"]
 
 
 def side_sign(side: Side) -> float:

@@ -11,10 +11,9 @@ from profiletool.errors import NoObject, UsageError
 from profiletool.profile.drawing.load import SUFFIXES, load_vector
 from profiletool.profile.side import top_middle
 from profiletool.profile.target import Reach, profile_of_line, profile_of_object
-from profiletool.records.frames import Side
 from profiletool.records.picture import Picture, Scale, Silhouette
 from profiletool.records.profile import Profile
-from profiletool.records.request import Look, Request, ScaleRequest
+from profiletool.records.request import Look, Request, ScaleRequest, Side
 from profiletool.subject.photo import changed, see, turn_of
 
 _WRONG_SCALE = {
@@ -50,7 +49,7 @@ def find_subject(request: Request, say: Callable[[str], None]) -> Subject:
     """
     reach = Reach(
         side=request.side,
-        radius_mm=request.material.radius_mm,
+        radius_mm=request.tube.radius_mm,
         clearance_mm=request.clearance_mm,
         start_pct=request.start_pct,
         end_pct=request.end_pct,
@@ -82,7 +81,7 @@ def _drawn_subject(request: Request, reach: Reach, say: Callable[[str], None]) -
     drawn = load_vector(request.file)
     look, points = request.look, drawn.points
     if not drawn.closed and (look.rotate == "auto" or look.symmetric):
-        raise UsageError("--rotate auto and --symmetric need an object; this is an open profile")
+        raise UsageError("`rotate` auto and `symmetric` need an object; this is an open profile")
     turn = turn_of(points, look.rotate)
     make = profile_of_object if drawn.closed else profile_of_line
     profile = make(changed(points, turn, look.symmetric), reach)
@@ -108,7 +107,7 @@ def drawing_notes(request: Request, subject: Subject) -> Iterator[str]:
         if request.scale != ScaleRequest():
             yield "a drawing is in mm already: the scale options were not used"
         if request.look != Look(rotate=request.look.rotate, symmetric=request.look.symmetric):
-            yield "a drawing needs no --box, --point or --mask: they were not used"
+            yield "a drawing needs no `box`, `point` or `mask`: they were not used"
         return
     yield from subject.notes
     if subject.silhouette.touches:

@@ -18,7 +18,7 @@ from fem.solve import Solution, solve, solve_near
 from profiletool.joints.correction.correct import CannotBend, Trial
 from profiletool.joints.correction.parameters import Actuator
 from profiletool.records.frames import Shape, base_axes
-from profiletool.records.request import Material
+from profiletool.records.request import TubeSpec
 from profiletool.records.units import FloatArray
 from profiletool.verify.lines import on_line, shape_of
 from profiletool.verify.run import ended, said, shortly
@@ -28,7 +28,7 @@ from profiletool.verify.tube import tube_of
 class FeBench:
     """Bends by finite elements of the whole actuator."""
 
-    def __init__(self, material: Material) -> None:
+    def __init__(self, material: TubeSpec) -> None:
         self._material = material
         self._rates: tuple[Solution, Sensitivities] | None = None  # the last ones found
 

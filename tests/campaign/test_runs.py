@@ -37,7 +37,7 @@ from profiletool.campaign.runs import (
     run,
     to_json,
 )
-from profiletool.records.request import Material
+from profiletool.records.request import TubeSpec
 from profiletool.verify.run import DOWN, LYING, inflate
 from profiletool.verify.tube import joint_actuator
 
@@ -53,7 +53,7 @@ def coarsely(monkeypatch: pytest.MonkeyPatch, gauze: Gauze | None = None) -> Non
 
 
 def test_the_joint_is_the_one_of_profiletool_joint() -> None:
-    assert actuator_of(TASK) == joint_actuator(10.0, 84.0, 270.0, Material())
+    assert actuator_of(TASK) == joint_actuator(10.0, 84.0, 270.0, TubeSpec())
 
 
 def test_all_lengths_go_with_the_diameter() -> None:

@@ -12,7 +12,7 @@ from profiletool.joints.paper.sectors import Sector
 from profiletool.profile.target import Reach, profile_of_object
 from profiletool.records.design import Joint, Misfit
 from profiletool.records.frames import Pose, Shape
-from profiletool.records.request import Material
+from profiletool.records.request import TubeSpec
 from profiletool.verdict.notes import (
     disagreement,
     named,
@@ -23,7 +23,7 @@ from profiletool.verdict.notes import (
 from profiletool.verdict.reasons import shortfalls
 
 PAPER = load_formula()
-MATERIAL = Material()
+MATERIAL = TubeSpec()
 RULES = joint_rules(theta_table(PAPER, MATERIAL), MATERIAL, 1.0)
 GOOD = Sector(0.0, 12.4, 20.0, (0.0, 0.0), np.radians(30.0), 8.0, 0.8, 0.1, 0.0, 0.0, False)
 JOINT = Joint(1, 20.0, 8.0, 132.0, 270.0, 30.0, 30.6, None, 10.0)
