@@ -115,9 +115,9 @@ def numbers(text: str) -> Numbers:
     try:
         values = [float(part) for part in text.split(",")]
     except ValueError as error:
-        raise typer.BadParameter(f"takes numbers with commas between, not {text!r}") from error
+        raise typer.BadParameter(f"expected numbers with commas between, not {text!r}") from error
     if not all(abs(value) < 1e6 for value in values):
-        raise typer.BadParameter(f"takes finite numbers, not {text!r}")
+        raise typer.BadParameter(f"expected finite numbers, not {text!r}")
     return Numbers(values)
 
 
@@ -135,7 +135,7 @@ def ascending(text: str) -> Numbers:
     """Read numbers above 0, in rising order and each once; as `numbers`."""
     values = Numbers(sorted(set(numbers(text))))
     if values[0] <= 0.0:
-        raise typer.BadParameter(f"takes numbers above 0, not {values[0]:g}")
+        raise typer.BadParameter(f"expected numbers above 0, not {values[0]:g}")
     return values
 
 
@@ -145,7 +145,7 @@ def turn(text: str) -> float | str:
         return text
     (angle,) = _so_many(text, 1)
     if abs(angle) > 360.0:
-        raise typer.BadParameter(f"takes at most 360 degrees, not {text}")
+        raise typer.BadParameter(f"expected at most 360 degrees, not {text}")
     return angle
 
 
@@ -153,5 +153,5 @@ def _so_many(text: str, count: int) -> Numbers:
     values = numbers(text)
     if len(values) != count:
         many = "one number" if count == 1 else f"{count} numbers with commas between"
-        raise typer.BadParameter(f"takes {many}, not {text!r}")
+        raise typer.BadParameter(f"expected {many}, not {text!r}")
     return values

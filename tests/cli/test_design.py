@@ -152,7 +152,7 @@ def test_exit_2_for_bad_usage(options: tuple[str, ...], tmp_path: Path) -> None:
     file = picture(tmp_path / "oval.png")
     scale = () if options[0] in ("--height", "--width", "--mm-per-px") else ("--height", "90")
     result = unverified(file, *scale, *options)
-    assert result.exit_code == 2, result.output
+    assert result.exit_code == 2, result.stderr
     assert [path.name for path in tmp_path.iterdir()] == ["oval.png"]
 
 

@@ -72,8 +72,8 @@ def test_a_number_that_was_asked_for_may_leave_the_tolerance() -> None:
 
 
 def test_tube_and_length() -> None:
-    assert "--formula" in reasons(material=replace(MATERIAL, outer_diameter_mm=16.0))[0]
-    assert "--formula" in reasons(material=replace(MATERIAL, wall_mm=1.5))[0]
+    assert "`formula`" in reasons(material=replace(MATERIAL, outer_diameter_mm=16.0))[0]
+    assert "`formula`" in reasons(material=replace(MATERIAL, wall_mm=1.5))[0]
     assert "250 mm" in reasons(layout=replace(LAYOUT, length_mm=250.2))[0]
     assert reasons(layout=replace(LAYOUT, length_mm=250.0)) == ()
 
@@ -114,7 +114,7 @@ def test_what_is_wrong_with_the_shape() -> None:
 def test_what_is_wrong_with_the_polygon() -> None:
     off = replace(GOOD, deviation_mm=2.5)
     (asked,) = polygon_warnings([GOOD, off], 1.0, 2)
-    assert asked == "with --joints 2 the polygon is 2.5 mm off the profile, beyond --tolerance 1"
+    assert asked == "with `joints` 2 the polygon is 2.5 mm off the profile, beyond `tolerance_mm` 1"
     assert list(polygon_warnings([GOOD, off], 1.0, None)) == []  # a shortfall there
     assert list(polygon_warnings([GOOD], 1.0, 1)) == []
 
