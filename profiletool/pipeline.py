@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -21,7 +20,7 @@ from profiletool.records.frames import Shape
 from profiletool.records.options import check_request
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request
-from profiletool.subject.find import Subject, find_subject
+from profiletool.subject.find import Subject, digest_of, find_subject
 from profiletool.verdict.attempt import Attempt
 from profiletool.verdict.missed import Missed
 from profiletool.verdict.notes import notes_of
@@ -136,7 +135,7 @@ def _design(
     return Design(
         source=Source(
             file=request.file.name,
-            sha256=hashlib.sha256(request.file.read_bytes()).hexdigest(),
+            sha256=digest_of(request),
             mm_per_px=subject.scale.mm_per_px if subject.picture is not None else None,
             scale_source=subject.scale.source,
             side=request.side,
@@ -176,4 +175,4 @@ def _verified(
             progress(reached_bar / design.pressure_bar)
 
     say(f"finite elements: the whole actuator to {design.pressure_bar:.2f} bar")
-    return check(design, profile, share)
+    return check(design, profile.points, share)

@@ -78,7 +78,7 @@ def design(
             raise _doubted(unsure, name) from unsure
         # Heavy: a picture that is refused is refused sooner without it.
         from profiletool import outputs
-        from profiletool.report.text import joint_table
+        from profiletool.verdict.summary import joint_table
 
         files = outputs.files_of(result, wish, delivery.paper)
         write.write_folder(folder, files, delivery.force)

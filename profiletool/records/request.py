@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:  # the command line answers --help without numpy
     from formula.theta import RubberLaw
+    from profiletool.records.picture import Picture
+    from profiletool.records.profile import Drawing, Profile
 
 
 Side = Literal["left", "right"]
@@ -96,7 +98,9 @@ Method = Literal["optimal", "paper"]
 class Request:
     """What `design` was asked for.
 
-    ``tolerance_mm`` None stands for the method's own, ``alpha_step_deg`` None for one thread.
+    ``file`` is the picture or drawing to read; where one is ``given`` in its place, ``file`` is
+    only its name. ``tolerance_mm`` None stands for the method's own, ``alpha_step_deg`` None for
+    one thread.
     """
 
     file: Path
@@ -118,3 +122,4 @@ class Request:
     extrapolate: bool = False
     verify: bool = True
     refine: bool = True
+    given: Picture | Drawing | Profile | None = None

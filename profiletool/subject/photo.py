@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -12,7 +11,7 @@ import numpy as np
 from profiletool.errors import NoObject
 from profiletool.image.find.hint import Hint, check_hint
 from profiletool.image.find.silhouette import find_silhouette
-from profiletool.image.load import load_mask, load_picture
+from profiletool.image.load import load_mask
 from profiletool.image.marker import find_markers
 from profiletool.image.scale import scale_of
 from profiletool.image.sheet.rectify import Rectified, edge_warnings, rectify
@@ -57,8 +56,8 @@ class Seen:
     notes: tuple[str, ...] = field(default=())
 
 
-def see(file: Path, asked: ScaleRequest, look: Look, say: Callable[[str], None]) -> Seen:
-    """Read a picture and find the object in it, its way up and its size.
+def see(picture: Picture, asked: ScaleRequest, look: Look, say: Callable[[str], None]) -> Seen:
+    """Find the object in a picture, its way up and its size.
 
     Raises
     ------
@@ -66,7 +65,6 @@ def see(file: Path, asked: ScaleRequest, look: Look, say: Callable[[str], None])
     Unsure
         Its candidates are masks of the photograph, which it carries too.
     """
-    picture = load_picture(file)
     hint = _hint(look, picture)
     sheet = rectify(picture)
     if sheet is not None:

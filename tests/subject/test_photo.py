@@ -12,6 +12,7 @@ import shapely
 from PIL import Image
 
 from profiletool.errors import NoObject, NoScale, Unsure, UsageError
+from profiletool.image.load import load_picture
 from profiletool.image.sheet.board import BOARDS
 from profiletool.image.sheet.rectify import Rectified, rectify
 from profiletool.profile.symmetry import symmetry_of
@@ -52,7 +53,7 @@ def drawn(
 
 
 def look_at(file: Path, asked: ScaleRequest = HEIGHT, **look: object) -> Seen:
-    return see(file, asked, Look(**look), lambda line: None)  # type: ignore[arg-type]
+    return see(load_picture(file), asked, Look(**look), lambda line: None)  # type: ignore[arg-type]
 
 
 def size_of(seen: Seen) -> tuple[float, float]:
