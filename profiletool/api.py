@@ -27,11 +27,11 @@ from profiletool.joints.windows import best_seam
 from profiletool.pipeline import Result, run
 from profiletool.profile.drawing.load import drawing_of
 from profiletool.records.design import Design, Fit, FormulaRef
-from profiletool.records.frames import side_sign
-from profiletool.records.options import check_request, request_of
+from profiletool.records.making import check_request, request_of
 from profiletool.records.picture import Picture
 from profiletool.records.profile import Drawing, Profile
 from profiletool.records.request import Request
+from profiletool.records.side import side_sign
 from profiletool.records.units import FloatArray
 from profiletool.subject.find import Subject
 from profiletool.subject.find import find_subject as find

@@ -17,7 +17,7 @@ from profiletool.joints.plan import Plan
 from profiletool.joints.windows import best_seam
 from profiletool.records.design import Design, Fit, FormulaRef, Gauze, Source, Tube
 from profiletool.records.frames import Shape
-from profiletool.records.options import check_request
+from profiletool.records.making import check_request
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request
 from profiletool.subject.find import Subject, digest_of, find_subject

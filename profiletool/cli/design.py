@@ -15,7 +15,8 @@ from profiletool.cli.console import Debug, Quiet, exit_codes, progress_bar, spea
 from profiletool.cli.rows import parameters_of, parameters_of_rows, with_signature
 from profiletool.cli.template import Date, Kerf, Paper
 from profiletool.errors import Infeasible, NoObject, NotVerified, Unsure
-from profiletool.records.options import DESIGN, check_request, request_of
+from profiletool.records.making import check_request, request_of
+from profiletool.records.options import DESIGN
 
 if TYPE_CHECKING:
     from profiletool.pipeline import Result

@@ -18,7 +18,7 @@ from profiletool.image.sheet.parallax import (
     remaining,
     shrinkage,
 )
-from profiletool.records.options import check_scale
+from profiletool.records.making import check_scale
 from profiletool.records.picture import Picture, Scale, Silhouette
 from profiletool.records.request import ScaleRequest
 

@@ -12,9 +12,8 @@ from profiletool.errors import NoObject
 from profiletool.profile.curve import Curve, arc_length, make_curve, smoothing_width
 from profiletool.profile.offset import reachable_line, reachable_outline
 from profiletool.profile.side import Stretch, side_of
-from profiletool.records.frames import side_sign
 from profiletool.records.profile import Profile
-from profiletool.records.request import Side
+from profiletool.records.side import Side, side_sign
 from profiletool.records.units import FloatArray
 
 STEP_MM = 0.1  # spacing of a profile's points

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from profiletool.records.frames import side_sign
-from profiletool.records.request import Side
+from profiletool.records.side import Side, side_sign
 from profiletool.records.units import FloatArray
 
 

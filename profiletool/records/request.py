@@ -6,13 +6,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-if TYPE_CHECKING:  # the command line answers --help without numpy
+from profiletool.records.side import Side
+
+if TYPE_CHECKING:
     from formula.theta import RubberLaw
     from profiletool.records.picture import Picture
     from profiletool.records.profile import Drawing, Profile
 
 
-Side = Literal["left", "right"]
 Box = tuple[float, float, float, float]  # x, y, width, height
 Point = tuple[float, float]  # x, y
 

@@ -15,7 +15,8 @@ from profiletool.profile.side import top_middle
 from profiletool.profile.target import Reach, profile_of_line, profile_of_object
 from profiletool.records.picture import Picture, Scale, Silhouette
 from profiletool.records.profile import Drawing, Profile
-from profiletool.records.request import Look, Request, ScaleRequest, Side
+from profiletool.records.request import Look, Request, ScaleRequest
+from profiletool.records.side import Side
 from profiletool.subject.photo import changed, see, turn_of
 
 _WRONG_SCALE = {

@@ -14,7 +14,8 @@ from fem.mesh import Mesh
 from fem.solve import Solution, State, solve
 from profiletool.records.design import Design
 from profiletool.records.fe import Critical, FeState, Verification
-from profiletool.records.frames import Pose, side_sign
+from profiletool.records.frames import Pose
+from profiletool.records.side import side_sign
 from profiletool.records.units import BAR_PER_MPA, FloatArray
 from profiletool.verify.lines import Placement, placed_shape
 from profiletool.verify.tube import actuator_of

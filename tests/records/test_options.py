@@ -10,14 +10,8 @@ import pytest
 
 from formula.files import load_formula
 from profiletool.errors import UsageError
-from profiletool.records.options import (
-    DESIGN,
-    FLAGS,
-    check_request,
-    check_scale,
-    in_flags,
-    request_of,
-)
+from profiletool.records.making import check_request, check_scale, request_of
+from profiletool.records.options import DESIGN, FLAGS, in_flags
 from profiletool.records.request import Request, ScaleRequest, TubeSpec
 
 NO_OPTIONS = {"file", "tube.thread_mm", "tube.turns", "tube.rubber"}

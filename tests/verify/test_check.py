@@ -18,8 +18,9 @@ from profiletool.errors import UnreadableInput
 from profiletool.files.design_json import load_design, to_json
 from profiletool.profile.curve import arc_length
 from profiletool.records.design import Design, Joint
-from profiletool.records.frames import Pose, side_sign
+from profiletool.records.frames import Pose
 from profiletool.records.profile import Profile
+from profiletool.records.side import side_sign
 from profiletool.verify.check import check, magnitude
 from profiletool.verify.lines import Placement
 from profiletool.verify.run import DOWN, LYING, STEPS, Run, inflate, pressures_to, run_design, solve
