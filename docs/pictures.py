@@ -1,7 +1,7 @@
 """Pictures of the guide, made anew from the sample bulb.
 
-Run as ``python docs/pictures.py``. Needs profiletool with the extra [test] (meshio reads the FE meshes). The same library versions
-give the same bytes; every picture stays below 200 kB.
+Run as ``python docs/pictures.py``. Needs profiletool with the extra [test] (meshio reads the FE
+meshes). The same library versions give the same bytes; every picture stays below 200 kB.
 """
 
 from __future__ import annotations
