@@ -10,7 +10,7 @@ import numpy as np
 
 from fem.errors import BadGeometry
 from fem.gauze import Gauze
-from fem.material import PAPER_RUBBER, MooneyRivlin
+from fem.material import PAPER_RUBBER, Law
 
 TOWARD, AWAY = np.radians(270.0), np.radians(90.0)  # alpha_center in the bending plane
 _LEAST_WRAP = 0.02  # of the diameter, between two windows
@@ -65,7 +65,7 @@ class Actuator:
     windows: tuple[Window, ...]
     diameter: float = 20.0
     wall: float = 2.0
-    rubber: MooneyRivlin = PAPER_RUBBER
+    rubber: Law = PAPER_RUBBER
     gauze: Gauze = field(default_factory=Gauze)
     plug: float = 1.0
 

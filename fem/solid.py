@@ -9,15 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.element import Reference
-from fem.material import (
-    PAIRS,
-    MooneyRivlin,
-    isochoric_energy,
-    kinematics,
-    stress,
-    tangent,
-    volumetric,
-)
+from fem.material import PAIRS, Law, kinematics
 
 FloatArray = NDArray[np.float64]
 
@@ -57,7 +49,7 @@ class SolidState:
 
 
 def respond(
-    rubber: MooneyRivlin,
+    rubber: Law,
     reference: Reference,
     heights: FloatArray,
     x: FloatArray,
@@ -70,7 +62,7 @@ def respond(
 
     Parameters
     ----------
-    rubber : MooneyRivlin
+    rubber : Law
     reference : Reference
         Of c bricks 2 mm high; all bricks of a column are stretched copies of its own.
     heights : (L,) mm
@@ -99,15 +91,15 @@ def respond(
     if mean_dilatation:
         total = volume.sum(axis=1)
         mean = (volume * k.J).sum(axis=1) / total
-        U, p, bulk = volumetric(rubber, mean)
-        energy = (volume * isochoric_energy(rubber, k)).sum() + (total * U).sum()
+        U, p, bulk = rubber.volumetric(mean)
+        energy = (volume * rubber.isochoric_energy(k)).sum() + (total * U).sum()
         p, local_bulk = np.broadcast_to(p[:, None], k.J.shape), 0.0
     else:
-        U, p, bulk = volumetric(rubber, k.J)
-        energy = (volume * (isochoric_energy(rubber, k) + U)).sum()
+        U, p, bulk = rubber.volumetric(k.J)
+        energy = (volume * (rubber.isochoric_energy(k) + U)).sum()
         local_bulk = bulk
     stresses = work.get("stress", (3, c, 3, q, L))
-    P = stress(rubber, k, p, out=np.moveaxis(stresses, 1, 2))
+    P = rubber.stress(k, p, out=np.moveaxis(stresses, 1, 2))
     P[:, :2] *= 0.5 * heights  # the third column's 2 / h and the volume's h / 2 cancel
     across = np.swapaxes(reference.weighted, 1, 2)
     force = across @ stresses.reshape(3, c, 3 * q, L)
@@ -115,7 +107,7 @@ def respond(
     if stiffness is None:
         return state
     moduli = work.get("tangent", (6, c, 3, 3, q, L))
-    A = tangent(rubber, k, p, local_bulk, out=np.moveaxis(moduli, 1, 3))
+    A = rubber.tangent(k, p, local_bulk, out=np.moveaxis(moduli, 1, 3))
     A[:, :2, :2] *= 0.5 * heights
     A[:, 2, 2] *= stretch_z
     np.matmul(np.swapaxes(moduli.reshape(6, c, 9 * q, L), 2, 3), reference.pairs, out=stiffness)

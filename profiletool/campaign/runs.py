@@ -162,12 +162,14 @@ def _model_sources() -> str:
 
 
 def hash_sources(package: Traversable) -> str:
-    """Hash the source files of a package, however their lines end."""
+    """Hash the source files of a package and its subpackages, however their lines end."""
     digest = hashlib.sha256()
     for file in sorted(package.iterdir(), key=lambda entry: entry.name):
         if file.name.endswith(".py"):
             code = file.read_bytes().replace(b"\r\n", b"\n")
             digest.update(f"{file.name} {len(code)}\n".encode() + code)
+        elif file.is_dir() and file.name != "__pycache__":
+            digest.update(f"{file.name}/ {hash_sources(file)}\n".encode())
     return digest.hexdigest()
 
 

@@ -150,6 +150,11 @@ def test_every_source_file_counts_however_its_lines_end(tmp_path: Path) -> None:
     file = copy / "newton.py"
     file.write_bytes(file.read_bytes().replace(b"\n", b"\r\n"))
     assert hash_sources(copy) == known
+    law = copy / "material" / "ogden.py"  # in a subpackage
+    law.rename(law.with_name("ogden2.py"))
+    assert hash_sources(copy) != known
+    law.with_name("ogden2.py").rename(law)
+    assert hash_sources(copy) == known
     file.rename(copy / "newton2.py")
     assert hash_sources(copy) != known
 

@@ -9,7 +9,7 @@ from fem.actuator import Actuator, chain
 from fem.errors import NotConverged
 from fem.gauze import Gauze
 from fem.loadpath import Options, lagrange
-from fem.material import MooneyRivlin
+from fem.material import NeoHooke
 from fem.meshsize import MeshSize
 from fem.solve import solve
 
@@ -20,7 +20,7 @@ SOFT = Gauze(stiffness=1e-3)  # hardly any: the tube balloons
 
 def balloon() -> Actuator:
     """A neo-Hookean tube that the gauze does not hold."""
-    rubber = MooneyRivlin.from_poisson(0.1, 0.0, 0.46)
+    rubber = NeoHooke.from_poisson(0.1, 0.46)
     return Actuator(40.0, (), rubber=rubber, gauze=SOFT)
 
 
