@@ -56,9 +56,25 @@ class Window:
 
 @dataclass(frozen=True)
 class Actuator:
-    """A tube of length ``length`` (clamped end to closed end, mm), with windows in order.
+    """A tube, closed at one end, in a gauze with windows.
 
-    ``plug`` is the length of the rigid closed end within ``length``; air fills the rest.
+    Attributes
+    ----------
+    length : float
+        From the clamped end to the closed end, mm.
+    windows : tuple of Window
+        In order from the clamped end.
+    diameter, wall : float
+        Outer diameter and thickness of the wall, mm.
+    rubber : Law
+    gauze : Gauze
+    plug : float
+        Length of the rigid closed end within ``length``, mm; air fills the rest.
+
+    Raises
+    ------
+    BadGeometry
+        When no such tube can exist, or none that this model describes.
     """
 
     length: float
@@ -115,6 +131,15 @@ def chain(
         What the tube goes on beyond the last F, mm.
     **rest
         Further fields of `Actuator`.
+
+    Returns
+    -------
+    Actuator
+
+    Raises
+    ------
+    BadGeometry
+        When no such tube can exist, or none that this model describes.
     """
     centres = root + np.concatenate([[0.0], np.cumsum(F)])
     middle = [TOWARD] * len(openF) if center is None else center

@@ -18,6 +18,7 @@ from fem import blas, measure
 from fem.actuator import Actuator, Window
 from fem.assembly import Forces, System
 from fem.errors import FemError
+from fem.items import MakeItem
 from fem.mesh import Mesh, alike, make_mesh, remesh
 from fem.transfer import settle
 
@@ -100,7 +101,13 @@ def flow_to(rates: Sensitivities, known: Actuator, new: Actuator, rise: float) -
 
 
 def sensitivities(
-    mesh: Mesh, x: FloatArray, pressure: float, threads: int = 2, *, angles: bool = True
+    mesh: Mesh,
+    x: FloatArray,
+    pressure: float,
+    threads: int = 2,
+    *,
+    angles: bool = True,
+    extra: Sequence[MakeItem] = (),
 ) -> Sensitivities:
     """Differentiate an equilibrium.
 
@@ -114,6 +121,8 @@ def sensitivities(
     angles : bool
         Whether to differentiate the joint angles and the volume too, half of the work; they are
         NaN otherwise.
+    extra : sequence of MakeItem
+        What contributes to the energy beside bricks, gauze and air; see `fem.items`.
 
     Raises
     ------
@@ -122,7 +131,7 @@ def sensitivities(
     """
     count = len(mesh.actuator.windows)
     with blas.one_thread():
-        system = System(mesh, threads)
+        system = System(mesh, threads, extra)
         try:
             forces, inverse = system.factor(x, pressure)
             if inverse is None:
@@ -211,7 +220,7 @@ def _pulls(
         near = _changed(mesh, actuator)
         # The clamped ring and the plug's change as well.
         at = settle(x, near, mesh)
-        ends.append(System(near, threads=1).forces(at))
+        ends.append(System(near, 1, system.extra).forces(at))
     residuals = [forces.residual(pressure) for forces in ends]
     pull = -(residuals[0] - residuals[1]) / (2.0 * step)
     return [np.where(_felt(system, parameter.segment), pull, 0.0) for parameter in family]

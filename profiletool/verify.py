@@ -14,11 +14,12 @@ import numpy as np
 
 from fem.actuator import AWAY, TOWARD, Actuator, Window, chain
 from fem.element import face_nodes, natural_nodes, shape
+from fem.equilibrium import Critical as FemCritical
 from fem.errors import BadGeometry, NotConverged
 from fem.gauze import THREAD_EA, Gauze
-from fem.loadpath import Critical as FemCritical
 from fem.mesh import Mesh
-from fem.solve import Solution, State, solve
+from fem.solution import Solution, State
+from fem.solver import solve
 from profiletool.joints.kinematics import STEP_MM, misfit
 from profiletool.joints.model import Chain
 from profiletool.records import (

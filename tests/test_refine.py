@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fem.equilibrium import Critical
 from fem.errors import BadGeometry, NotConverged
-from fem.loadpath import Critical
-from fem.solve import Solution
+from fem.solution import Solution
 from profiletool import refine
 from profiletool.joints.correct import CannotBend, Steps, Trial, correct
 from profiletool.joints.parameters import Limits, Parameters, feet, residual_jacobian

@@ -109,7 +109,7 @@ class NeoHooke(InvariantLaw):
 
 @dataclass(frozen=True)
 class Yeoh(InvariantLaw):
-    """W_iso = C10 x + C20 x^2 + C30 x^3, x = I1bar - 3: the constants and the bulk modulus, MPa.
+    """W_iso = C10 x + C20 x^2 + C30 x^3, x = I1bar - 3: these and the bulk modulus K, MPa.
 
     Yeoh, Rubber Chem. Technol. 66 (1993) 754. C20 is often negative (the rubber turns softer
     first) and C30 positive (it stiffens at large stretches). Where dW/dx falls below 0 the rubber

@@ -17,11 +17,12 @@ import fem
 from fem.actuator import Actuator, chain
 from fem.errors import FemError, NotConverged
 from fem.gauze import PAPER_GAUZE, Gauze
-from fem.loadpath import Options
+from fem.loadpath import DEFAULT_OPTIONS, Options
 from fem.material import MooneyRivlin
 from fem.measure import Sector
 from fem.meshsize import DEFAULT_MESH, PAPER_MESH, MeshSize
-from fem.solve import DEFAULT_OPTIONS, Solution, State, solve
+from fem.solution import Solution, State
+from fem.solver import solve
 
 Model = Literal["converged", "paper"]
 

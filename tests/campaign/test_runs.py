@@ -19,12 +19,13 @@ import fem
 from fem.actuator import chain
 from fem.errors import FemError, NotConverged
 from fem.gauze import PAPER_GAUZE, Gauze
-from fem.loadpath import Options
+from fem.loadpath import DEFAULT_OPTIONS, Options
 from fem.material import PAPER_RUBBER, MooneyRivlin
 from fem.measure import Sector
 from fem.meshsize import DEFAULT_MESH, PAPER_MESH, MeshSize
 from fem.sections import rotation_matrix
-from fem.solve import DEFAULT_OPTIONS, Solution, solve
+from fem.solution import Solution
+from fem.solver import solve
 from profiletool.campaign import runs
 from profiletool.campaign.runs import (
     Outcome,

@@ -16,7 +16,8 @@ from fem.gauze import PAPER_GAUZE, Gauze
 from fem.loadpath import Options
 from fem.material import Law, MooneyRivlin, Ogden
 from fem.meshsize import DEFAULT_MESH, PAPER_MESH, MeshSize
-from fem.solve import Solution, solve
+from fem.solution import Solution
+from fem.solver import solve
 from tests.fem.laws import EVERY_LAW
 
 FloatArray = NDArray[np.float64]

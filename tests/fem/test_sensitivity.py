@@ -11,8 +11,10 @@ import pytest
 from fem.actuator import Actuator, Window, chain
 from fem.errors import FemError
 from fem.meshsize import MeshSize
+from fem.near import solve_near
 from fem.sensitivity import Rate, Sensitivities, sensitivities
-from fem.solve import State, solve, solve_near
+from fem.solution import State
+from fem.solver import solve
 from tests.fem.laws import RUBBERS
 
 # Even bricks: the mesh itself must not follow the sectors, or it would change with alpha.
