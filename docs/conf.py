@@ -1,5 +1,6 @@
 """Sphinx configuration of the guide; the build needs no network, nor does the reader."""
 
+import sys
 import tomllib
 from pathlib import Path
 
@@ -10,10 +11,13 @@ from sphinx.application import Sphinx
 from sphinx.util import logging
 from sphinx.writers.html5 import HTML5Translator
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from profiletool.records.version import VERSION  # noqa: E402
+
 _PROJECT = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text())["project"]
 
 project = _PROJECT["name"]
-version = release = _PROJECT["version"]
+version = release = VERSION
 project_copyright = "the authors of profiletool, MIT licence"
 
 extensions = ["myst_parser"]

@@ -14,6 +14,6 @@ for alpha in (132.0, 120.0):
     check = verify_design(replace(design, joints=(*design.joints[:-1], last)), profile)
     found = check.design
     print(
-        f"alpha {alpha:g} deg at joint {last.number}: theta {found.joints[-1].theta_fe_deg:.1f} deg, "
+        f"joint {last.number}, alpha {alpha:g} deg: theta {found.joints[-1].theta_fe_deg:.1f} deg, "
         f"{found.fit.fe.rms_mm:.2f} mm RMS off the profile, verified: {found.verified}"
     )

@@ -2,7 +2,7 @@
 
 from math import degrees, radians
 
-from fem import NeoHooke, PAPER_RUBBER, Yeoh, chain, solve
+from fem import PAPER_RUBBER, NeoHooke, Yeoh, chain, solve
 
 half = 0.5 * PAPER_RUBBER.shear_modulus  # MPa
 for rubber in (

@@ -17,11 +17,12 @@ import fem
 from fem.actuator import Actuator, chain
 from fem.errors import FemError, NotConverged
 from fem.gauze import PAPER_GAUZE, Gauze
-from fem.loadpath import Options
+from fem.loadpath import DEFAULT_OPTIONS, Options
 from fem.material import MooneyRivlin
 from fem.measure import Sector
 from fem.meshsize import DEFAULT_MESH, PAPER_MESH, MeshSize
-from fem.solve import DEFAULT_OPTIONS, Solution, State, solve
+from fem.solution import Solution, State
+from fem.solver import solve
 from profiletool.records.units import BAR_PER_MPA
 
 Model = Literal["converged", "paper"]
@@ -162,12 +163,14 @@ def _model_sources() -> str:
 
 
 def hash_sources(package: Traversable) -> str:
-    """Hash the source files of a package, however their lines end."""
+    """Hash the source files of a package and its subpackages, however their lines end."""
     digest = hashlib.sha256()
     for file in sorted(package.iterdir(), key=lambda entry: entry.name):
         if file.name.endswith(".py"):
             code = file.read_bytes().replace(b"\r\n", b"\n")
             digest.update(f"{file.name} {len(code)}\n".encode() + code)
+        elif file.is_dir() and file.name != "__pycache__":
+            digest.update(f"{file.name}/ {hash_sources(file)}\n".encode())
     return digest.hexdigest()
 
 

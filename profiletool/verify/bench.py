@@ -13,8 +13,10 @@ import numpy as np
 from fem.actuator import Actuator as Tube
 from fem.errors import BadGeometry, NotConverged
 from fem.mesh import Mesh
+from fem.near import solve_near
 from fem.sensitivity import Rate, Sensitivities, flow_to, sensitivities
-from fem.solve import Solution, solve, solve_near
+from fem.solution import Solution
+from fem.solver import solve
 from profiletool.joints.correction.correct import CannotBend, Trial
 from profiletool.joints.correction.parameters import Actuator
 from profiletool.records.frames import Shape, base_axes

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem.actuator import Actuator
+from fem.equilibrium import Critical as FemCritical
 from fem.errors import NotConverged
-from fem.loadpath import Critical as FemCritical
 from fem.mesh import Mesh
-from fem.solve import Solution, State, solve
+from fem.solution import Solution, State
+from fem.solver import solve
 from profiletool.records.design import Design
 from profiletool.records.fe import Critical, FeState, Verification
 from profiletool.records.frames import Pose

@@ -19,12 +19,13 @@ import fem
 from fem.actuator import chain
 from fem.errors import FemError, NotConverged
 from fem.gauze import PAPER_GAUZE, Gauze
-from fem.loadpath import Options
+from fem.loadpath import DEFAULT_OPTIONS, Options
 from fem.material import PAPER_RUBBER, MooneyRivlin
 from fem.measure import Sector
 from fem.meshsize import DEFAULT_MESH, PAPER_MESH, MeshSize
 from fem.sections import rotation_matrix
-from fem.solve import DEFAULT_OPTIONS, Solution, solve
+from fem.solution import Solution
+from fem.solver import solve
 from profiletool.campaign import runs
 from profiletool.campaign.runs import (
     Outcome,
@@ -150,6 +151,11 @@ def test_every_source_file_counts_however_its_lines_end(tmp_path: Path) -> None:
     (copy / "notes.txt").write_text("not a source file")
     file = copy / "newton.py"
     file.write_bytes(file.read_bytes().replace(b"\n", b"\r\n"))
+    assert hash_sources(copy) == known
+    law = copy / "material" / "ogden.py"  # in a subpackage
+    law.rename(law.with_name("ogden2.py"))
+    assert hash_sources(copy) != known
+    law.with_name("ogden2.py").rename(law)
     assert hash_sources(copy) == known
     file.rename(copy / "newton2.py")
     assert hash_sources(copy) != known

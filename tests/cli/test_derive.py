@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fem.solve import solve
+from fem.solver import solve
 from formula.files import campaign_of, load_formula, read_bytes
 from formula.theta import theta_deg
 from profiletool.records.request import TubeSpec

@@ -473,12 +473,12 @@ JOINT = ("joint", "--openF", "10", "--alpha", "84", "--pressure", "0.2")
 
 def ending_early(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let every FE run meet a limit point half-way."""
-    import fem.solve
+    import fem
 
-    def stopped(*arguments: object, **options: object) -> fem.solve.Solution:
-        found = fem.solve.solve(*arguments, **options)
+    def stopped(*arguments: object, **options: object) -> fem.Solution:
+        found = fem.solve(*arguments, **options)
         middle = len(found.states) // 2
-        ended = fem.solve.Critical("limit point", found.states[middle].pressure)
+        ended = fem.Critical("limit point", found.states[middle].pressure)
         return replace(found, states=found.states[:middle], critical=ended)
 
     monkeypatch.setattr("profiletool.verify.run.solve", stopped)

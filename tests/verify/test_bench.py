@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fem.equilibrium import Critical
 from fem.errors import BadGeometry, NotConverged
-from fem.loadpath import Critical
-from fem.solve import Solution
+from fem.solution import Solution
 from profiletool.bending.response import Response
 from profiletool.joints.bounds import Limits
 from profiletool.joints.correction.correct import CannotBend, Steps, Trial, correct
