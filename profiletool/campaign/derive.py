@@ -9,7 +9,7 @@ from itertools import product
 import numpy as np
 
 from fem.errors import BadGeometry
-from fem.material import MooneyRivlin
+from fem.material import Law
 from formula.data import Data
 from formula.errors import BadFormula
 from formula.files import campaign_of, parse_formula, read_bytes
@@ -18,12 +18,15 @@ from formula.similar import carried, corrected, correction_runs
 from formula.theta import Formula, Terms, theta_deg
 from profiletool.campaign.runs import Model, Outcome, Task, actuator_of
 from profiletool.errors import NotVerified, UnreadableInput, UsageError
+from profiletool.records.rubber import law_of
 from profiletool.records.units import FloatArray
-from profiletool.rubber.presets import Rubber, law_of
+from profiletool.rubber.presets import Rubber
+from profiletool.rubber.uniaxial import uniaxial_stress
 
 RunAll = Callable[[Sequence[Task]], list[Outcome]]
 _MOST_RUNS = 10_000
 _SAME = 0.02  # how far shape and kind of rubber may differ and still count as the same
+_PULLED = np.array([1.25, 2.0, 3.0])  # stretches at which kinds of rubber are compared
 
 
 @dataclass(frozen=True)
@@ -216,9 +219,10 @@ def _guess(plan: Plan, base: Base, axes: Sequence[FloatArray]) -> FloatArray:
 def similar(plan: Plan, base: Base) -> bool:
     """Whether the tube and the kind of rubber are those of a known campaign but for scale."""
 
-    def numbers(diameter: float, wall: float, law: MooneyRivlin) -> tuple[float, ...]:
-        stiffness = law.C10 + law.C01
-        return wall / diameter, 1.0 + law.C01 / stiffness, law.K / stiffness
+    def numbers(diameter: float, wall: float, law: Law) -> tuple[float, ...]:
+        # Mooney's plot, stress / (lam - lam^-2) over the stiffness, tells laws apart.
+        plot = uniaxial_stress(law, _PULLED) / (_PULLED - _PULLED**-2.0) / law.shear_modulus
+        return wall / diameter, *plot.tolist(), law.bulk_modulus / law.shear_modulus
 
     known = base.formula
     pairs = zip(

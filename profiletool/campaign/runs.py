@@ -18,7 +18,7 @@ from fem.actuator import Actuator, chain
 from fem.errors import FemError, NotConverged
 from fem.gauze import PAPER_GAUZE, Gauze
 from fem.loadpath import DEFAULT_OPTIONS, Options
-from fem.material import MooneyRivlin
+from fem.material import Law
 from fem.measure import Sector
 from fem.meshsize import DEFAULT_MESH, PAPER_MESH, MeshSize
 from fem.solution import Solution, State
@@ -42,7 +42,7 @@ class Task:
     openF_mm, alpha_deg : float
         Axial length of the cut, and extent of the uncut sector.
     diameter_mm, wall_mm : float
-    rubber : MooneyRivlin
+    rubber : fem.material.Law
         MPa.
     pressures_bar : tuple of float
         Rising, above 0.
@@ -60,7 +60,7 @@ class Task:
     alpha_deg: float
     diameter_mm: float
     wall_mm: float
-    rubber: MooneyRivlin
+    rubber: Law
     pressures_bar: tuple[float, ...]
     model: Model = "converged"
 
@@ -147,7 +147,7 @@ def key(task: Task) -> str:
         "alpha_deg": float(task.alpha_deg),
         "diameter_mm": float(task.diameter_mm),
         "wall_mm": float(task.wall_mm),
-        "rubber": {name: float(value) for name, value in asdict(task.rubber).items()},
+        "rubber": {"law": task.rubber.name, **task.rubber.constants},
         "pressures_bar": [float(p) for p in task.pressures_bar],
         "model": task.model,
         "settings": asdict(_SETTINGS[task.model]),

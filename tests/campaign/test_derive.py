@@ -78,7 +78,7 @@ def test_a_campaign_runs_every_pair_once_and_gives_its_formula_back() -> None:
     assert formula.openF_range_mm == (6.0, 14.0)
     assert formula.pressure_range_bar == (0.0, 2.0)
     assert formula.rubber is not None
-    assert formula.rubber.C10_MPa == PAPER_RUBBER.C10
+    assert formula.rubber.constants == PAPER_RUBBER.constants
 
 
 def test_the_file_says_how_good_it_is_and_holds_the_campaign(tmp_path: Path) -> None:
