@@ -27,7 +27,7 @@ _SAME = 0.02  # how far shape and kind of rubber may differ and still count as t
 
 
 @dataclass(frozen=True)
-class Plan:
+class CampaignPlan:
     """What a formula is wanted for.
 
     Attributes
@@ -73,7 +73,7 @@ class Derivation:
 
     Attributes
     ----------
-    plan : Plan
+    plan : CampaignPlan
     base : Base or None
     made : Data
         The angles of the runs that were made.
@@ -91,7 +91,7 @@ class Derivation:
     chosen : Candidate
     """
 
-    plan: Plan
+    plan: CampaignPlan
     base: Base | None
     made: Data
     data: Data
@@ -124,7 +124,7 @@ def load_base(name: str) -> Base:
     return Base(formula, campaign)
 
 
-def derive(plan: Plan, run_all: RunAll, base: Base | None = None) -> Derivation:
+def derive(plan: CampaignPlan, run_all: RunAll, base: Base | None = None) -> Derivation:
     """Run what has to be run, and fit.
 
     Raises
@@ -164,7 +164,7 @@ def derive(plan: Plan, run_all: RunAll, base: Base | None = None) -> Derivation:
     )
 
 
-def formula_of(plan: Plan, terms: Terms) -> Formula:
+def formula_of(plan: CampaignPlan, terms: Terms) -> Formula:
     """Make a formula of terms, with the range that the campaign covers."""
     return Formula(
         "", "", "", terms, plan.diameter_mm, plan.wall_mm,
@@ -174,7 +174,7 @@ def formula_of(plan: Plan, terms: Terms) -> Formula:
     )  # fmt: skip
 
 
-def check_plan(plan: Plan) -> None:
+def check_plan(plan: CampaignPlan) -> None:
     """Refuse a tube or a cut that cannot be, before anything is run.
 
     Raises
@@ -191,7 +191,7 @@ def check_plan(plan: Plan) -> None:
             raise UsageError(str(error)) from error
 
 
-def _guess(plan: Plan, base: Base, axes: Sequence[FloatArray]) -> FloatArray:
+def _guess(plan: CampaignPlan, base: Base, axes: Sequence[FloatArray]) -> FloatArray:
     law, known = plan.rubber.law, law_of(base.formula.rubber)
     guess = carried(
         base.data, axes[0], axes[1], axes[2],
@@ -213,7 +213,7 @@ def _guess(plan: Plan, base: Base, axes: Sequence[FloatArray]) -> FloatArray:
     return guess
 
 
-def similar(plan: Plan, base: Base) -> bool:
+def similar(plan: CampaignPlan, base: Base) -> bool:
     """Whether the tube and the kind of rubber are those of a known campaign but for scale."""
 
     def numbers(diameter: float, wall: float, law: MooneyRivlin) -> tuple[float, ...]:
@@ -229,7 +229,7 @@ def similar(plan: Plan, base: Base) -> bool:
     return all(abs(a / b - 1.0) <= _SAME for a, b in pairs)
 
 
-def _predictor(plan: Plan, terms: Terms) -> Callable[..., FloatArray]:
+def _predictor(plan: CampaignPlan, terms: Terms) -> Callable[..., FloatArray]:
     formula = formula_of(plan, terms)
 
     def predict(alpha: FloatArray, openF: FloatArray, P: FloatArray) -> FloatArray:

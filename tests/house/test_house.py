@@ -14,7 +14,6 @@ LONG_FUNCTIONS = {
     "fem/solid.py:respond",
     "fem/solve.py:solve",
     "fem/solve.py:solve_near",
-    "profiletool/campaign/workers.py:run_all",
     "profiletool/cli/derive.py:derive",
     "profiletool/cli/design.py:design",
     "profiletool/joints/optimal_method.py:optimal_plan",
