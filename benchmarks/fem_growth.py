@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 from _common import calibration, machine, median_of, rising, row_of_joints, table
 
-from fem.solve import Solution, solve
+from fem.solution import Solution
+from fem.solver import solve
 
 JOINTS = (2, 4, 8, 12, 16, 24)
 TARGET = 1.1

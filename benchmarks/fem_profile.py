@@ -14,7 +14,7 @@ from _common import bulb, dgemm_rate, machine, rising, table
 
 import fem
 from fem import blas, solid
-from fem.solve import solve
+from fem.solver import solve
 
 HOME = Path(fem.__file__).parent
 # Functions that are a stage of their own; all others go by their module.

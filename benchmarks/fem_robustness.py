@@ -20,7 +20,8 @@ from _common import machine, table
 from fem.actuator import AWAY, TOWARD, Actuator, Window
 from fem.errors import NotConverged
 from fem.material import PAPER_RUBBER, MooneyRivlin
-from fem.solve import State, solve
+from fem.solution import State
+from fem.solver import solve
 
 LEAST_SHARE = 0.99
 RESIDUAL, ENERGY = 1e-5, 1e-3

@@ -10,16 +10,16 @@ from statistics import median
 
 from _common import bulb, calibration, joint, machine, median_of, rising, skew, table
 
-from fem.solve import solve
+from fem.solver import solve
 
 ALPHA, OPENF = (84.0, 108.0, 120.0, 132.0, 156.0), (6.0, 8.0, 10.0, 12.0, 14.0)
 
-_IMPORT = "import time; t = time.perf_counter(); import fem.solve; print(time.perf_counter() - t)"
+_IMPORT = "import time; t = time.perf_counter(); import fem.solver; print(time.perf_counter() - t)"
 _MEMORY = """
 import resource, sys
 sys.path.insert(0, sys.argv[1])
 from _common import bulb
-from fem.solve import solve
+from fem.solver import solve
 solve(bulb(), [0.19], threads=int(sys.argv[2]))
 peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 print(peak * (1 if sys.platform == "darwin" else 1024) / 1e6)
@@ -75,7 +75,7 @@ def main() -> None:
         spread = f"{t.least:.2f} .. {t.most:.2f}" if count > 1 else ""
         rows.append((name, f"{t.middle:.2f}", spread, f"{t.cpu:.2f}", f"{t.middle / unit:.1f}",
                      *judged(t.middle, aim, target)))  # fmt: skip
-    rows.append(("import fem.solve", f"{imports:.2f}", "", "", f"{imports / unit:.1f}",
+    rows.append(("import fem.solver", f"{imports:.2f}", "", "", f"{imports / unit:.1f}",
                  *judged(imports, None, 0.3)))  # fmt: skip
     rows.append(("peak memory of the bulb, MB", f"{memory:.0f}", "", "", "",
                  *judged(memory, None, 500.0)))  # fmt: skip

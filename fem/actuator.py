@@ -10,7 +10,7 @@ import numpy as np
 
 from fem.errors import BadGeometry
 from fem.gauze import Gauze
-from fem.material import PAPER_RUBBER, MooneyRivlin
+from fem.material import PAPER_RUBBER, Law
 
 TOWARD, AWAY = np.radians(270.0), np.radians(90.0)  # alpha_center in the bending plane
 _LEAST_WRAP = 0.02  # of the diameter, between two windows
@@ -56,16 +56,32 @@ class Window:
 
 @dataclass(frozen=True)
 class Actuator:
-    """A tube of length ``length`` (clamped end to closed end, mm), with windows in order.
+    """A tube, closed at one end, in a gauze with windows.
 
-    ``plug`` is the length of the rigid closed end within ``length``; air fills the rest.
+    Attributes
+    ----------
+    length : float
+        From the clamped end to the closed end, mm.
+    windows : tuple of Window
+        In order from the clamped end.
+    diameter, wall : float
+        Outer diameter and thickness of the wall, mm.
+    rubber : Law
+    gauze : Gauze
+    plug : float
+        Length of the rigid closed end within ``length``, mm; air fills the rest.
+
+    Raises
+    ------
+    BadGeometry
+        When no such tube can exist, or none that this model describes.
     """
 
     length: float
     windows: tuple[Window, ...]
     diameter: float = 20.0
     wall: float = 2.0
-    rubber: MooneyRivlin = PAPER_RUBBER
+    rubber: Law = PAPER_RUBBER
     gauze: Gauze = field(default_factory=Gauze)
     plug: float = 1.0
 
@@ -115,6 +131,15 @@ def chain(
         What the tube goes on beyond the last F, mm.
     **rest
         Further fields of `Actuator`.
+
+    Returns
+    -------
+    Actuator
+
+    Raises
+    ------
+    BadGeometry
+        When no such tube can exist, or none that this model describes.
     """
     centres = root + np.concatenate([[0.0], np.cumsum(F)])
     middle = [TOWARD] * len(openF) if center is None else center

@@ -7,13 +7,14 @@ never exists, and the result does not depend on how many threads there are.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fem.items import ITEMS, MakeItem
 from fem.mesh import Mesh
 from fem.part import Part
 from fem.pattern import Unknowns
@@ -35,7 +36,7 @@ class Forces:
     volume_gradient : (count,) mm^2
         Gradient of the enclosed volume: forces of a unit pressure.
     energy : float, N mm
-        Stored in rubber and gauze (half of it in a half model).
+        Stored in rubber, gauze and whatever else contributes (half of it in a half model).
     volume : float, mm^3
         Enclosed (half of it in a half model).
     least_J : float
@@ -90,18 +91,20 @@ class System:
     ----------
     mesh : Mesh
     threads : {1, 2}
+    extra : sequence of MakeItem
+        What contributes to the energy beside `fem.items.ITEMS`.
     """
 
-    def __init__(self, mesh: Mesh, threads: int = 2) -> None:
-        self.mesh = mesh
+    def __init__(self, mesh: Mesh, threads: int = 2, extra: Sequence[MakeItem] = ()) -> None:
+        self.mesh, self.extra = mesh, tuple(extra)
         self.unknowns = Unknowns.of(mesh)
         self.plug = Plug(mesh)
         self.version = 0
         middle = mesh.layers // 2
-        self.middle = middle
+        self.middle, items = middle, (*ITEMS, *extra)
         self._parts = (
-            Part(mesh, self.unknowns, range(middle), from_root=True),
-            Part(mesh, self.unknowns, range(middle, mesh.layers), from_root=False),
+            Part(mesh, self.unknowns, range(middle), items, from_root=True),
+            Part(mesh, self.unknowns, range(middle, mesh.layers), items, from_root=False),
         )
         self._last = Pivot(len(self.unknowns.ring) if middle > 0 else 0)
         self._pool = ThreadPoolExecutor(1) if threads > 1 else None
@@ -148,16 +151,16 @@ class System:
         return forces, Inverse(self, self.version)
 
     def _gather(self, x: FloatArray) -> Forces:
-        root, tip = self._parts
-        least = min(root.least_J, tip.least_J)
+        ours, theirs = (part.sums for part in self._parts)
+        least = min(ours.least_J, theirs.least_J)
         if not least > 0.0:
             void = np.full(self.unknowns.count, np.nan)
             return Forces(void, void, np.nan, np.nan, least)
         cap, cap_gradient = self.plug.cap_volume(x)
-        internal = self.restrict(x, root.internal + tip.internal)
-        gradient = self.restrict(x, root.gradient + tip.gradient)
+        internal = self.restrict(x, ours.internal + theirs.internal)
+        gradient = self.restrict(x, ours.gradient + theirs.gradient)
         gradient[-self.unknowns.plug :] += cap_gradient
-        energy, volume = root.energy + tip.energy, root.volume + tip.volume + cap
+        energy, volume = ours.energy + theirs.energy, ours.volume + theirs.volume + cap
         return Forces(internal, gradient, energy, volume, least)
 
     def compliance(

@@ -1,8 +1,17 @@
-"""What can go wrong, each kind with what the caller needs to act on it."""
+"""The errors of this package, each with what the caller needs to act on it.
+
+FemError
+    BadGeometry     no such actuator, or none that this model describes; a ValueError too
+    NotConverged    no equilibrium at an asked pressure; carries the states that were reached
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from fem.solution import Solution
 
 
 class FemError(Exception):
@@ -17,9 +26,16 @@ class BadGeometry(FemError, ValueError):
 class Attempt:
     """One pressure that the solver tried.
 
-    ``residual`` is relative to the pressure's nodal forces; ``outcome`` says in a word what came
-    of it: "converged", "residual" (still too large), "inverted" (a brick turned inside out) or
-    "unstable" (equilibrium, but not a stable one).
+    Attributes
+    ----------
+    pressure : float, MPa
+    iterations, factorisations : int
+        Newton steps, and factorisations of the tangent.
+    residual : float
+        Unbalanced forces over the pressure's.
+    outcome : {"converged", "residual", "inverted", "unstable"}
+        The last three: the residual stayed too large, a brick turned inside out, an equilibrium
+        but not a stable one.
     """
 
     pressure: float
@@ -38,9 +54,22 @@ class NotConverged(FemError):
         All that was tried, in order.
     reached : float
         The highest pressure with a converged state, MPa.
+    solution : Solution or None
+        The states that were reached, at rest and at asked pressures; None where nobody kept them.
     """
 
-    def __init__(self, message: str, history: tuple[Attempt, ...], reached: float) -> None:
+    def __init__(
+        self,
+        message: str,
+        history: tuple[Attempt, ...],
+        reached: float,
+        solution: Solution | None = None,
+    ) -> None:
         super().__init__(message)
         self.history = history
         self.reached = reached
+        self.solution = solution
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickle all of it: a campaign's runs raise in processes of their own."""
+        return type(self), (str(self), self.history, self.reached, self.solution)

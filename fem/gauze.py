@@ -23,7 +23,7 @@ PAPER_STIFFNESS = THREAD_EA * 2 / 2.0
 
 @dataclass(frozen=True)
 class Gauze:
-    """What the gauze is made of.
+    """The material of the gauze.
 
     Attributes
     ----------
@@ -38,6 +38,11 @@ class Gauze:
         paper's model: its alpha acts like a smeared sector of alpha + 6 deg).
     pitch : float or None
         None for a smeared gauze; else single threads this far apart, mm.
+
+    Raises
+    ------
+    ValueError
+        When a number makes no sense.
     """
 
     stiffness: float = PAPER_STIFFNESS
@@ -74,7 +79,7 @@ class Threads:
     weight: FloatArray
 
 
-def law(gauze: Gauze, lam: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def tension_law(gauze: Gauze, lam: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Energy, force and tangent of a thread at stretch lam, over its stiffness.
 
     Zero at rest and in compression (but for ``slack``); the tangent rises linearly from there to
@@ -121,7 +126,7 @@ def respond(gauze: Gauze, threads: Threads, x: FloatArray, tangent: bool) -> Thr
     """Energy, nodal forces and stiffness of threads on faces with nodes x (E, n, 3), mm."""
     g = threads.gradient @ x
     lam = np.sqrt(np.einsum("eqi,eqi->eq", g, g))
-    energy, force, slope = law(gauze, lam)
+    energy, force, slope = tension_law(gauze, lam)
     w = threads.weight
     along = w * force / lam
     nodal = np.swapaxes(threads.gradient, 1, 2) @ (along[..., None] * g)

@@ -10,12 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.assembly import Forces, System
+from fem.assembly import System
+from fem.equilibrium import Critical, Equilibrium, lagrange, peak, potential, spread
 from fem.errors import Attempt, NotConverged
 from fem.newton import Correction, correct, descend
 from fem.sections import Chart, Pose
@@ -59,48 +59,7 @@ class Options:
     beyond: float = 0.0
 
 
-@dataclass(frozen=True)
-class Equilibrium:
-    """A state in equilibrium.
-
-    Attributes
-    ----------
-    pressure : float, MPa
-    pose : Pose
-    forces : Forces
-    compliance : float
-        dV/dp, mm^3/MPa; negative past a limit point. At the first states and by volume, else NaN.
-    residual : float
-        Relative to the pressure's forces.
-    asked : bool
-        Whether this state shall be reported.
-    negative : int
-        Negative eigenvalues of the tangent; 0 where the state is stable under pressure.
-    """
-
-    pressure: float
-    pose: Pose
-    forces: Forces
-    compliance: float
-    residual: float
-    asked: bool
-    negative: int
-
-
-@dataclass(frozen=True)
-class Critical:
-    """Where the path loses its stability under pressure.
-
-    Attributes
-    ----------
-    kind : {"limit point", "bifurcation"}
-        Beyond a limit point there is no equilibrium nearby at a higher pressure: the tube
-        balloons. At a bifurcation it buckles into another shape.
-    pressure : float, MPa
-    """
-
-    kind: Literal["limit point", "bifurcation"]
-    pressure: float
+DEFAULT_OPTIONS = Options()
 
 
 class Path:
@@ -116,7 +75,7 @@ class Path:
 
     def __init__(self, system: System, chart: Chart, options: Options) -> None:
         self._system, self._chart, self._options = system, chart, options
-        self._known: list[Equilibrium] = []
+        self._states: list[Equilibrium] = []
         self._careful = False
         self._unstable = False  # whether an unstable equilibrium was found ahead
         self.history: list[Attempt] = []
@@ -139,28 +98,28 @@ class Path:
                 count = max(1, int(np.ceil((target - pressure) / step - 1e-6)))
                 asked = count == 1
                 trial = target if asked else pressure + (target - pressure) / count
-                found, first = self._try(trial, None, asked)
-                if found is not None:
+                state, first = self._try(trial, None, asked)
+                if state is not None:
                     step = (trial - pressure) * _rate(options.aim / first)
                     self._careful = step < 5.0 * options.smallest * mu
                     pressure, failed = trial, 0
-                    yield found
+                    yield state
                     continue
                 failed += 1
                 shorter = 0.4 * (trial - pressure)
                 last = shorter < options.smallest * mu
                 if last or failed == _FAILED:
-                    found = self._settle(trial, asked)
-                if found is not None:
+                    state = self._settle(trial, asked)
+                if state is not None:
                     step = max(trial - pressure, options.smallest * mu)
                     pressure, failed = trial, 0
-                    yield found
+                    yield state
                 elif last:
                     step, failed = options.smallest * mu, 0
                     yield from self._by_volume(trial, shorter)
                     if self.critical is not None:
                         return
-                    pressure = self._known[-1].pressure
+                    pressure = self._states[-1].pressure
                 else:
                     step = shorter
 
@@ -168,7 +127,7 @@ class Path:
         self, pressure: float, volume: float | None, asked: bool
     ) -> tuple[Equilibrium | None, float]:
         """Predict and correct; give the equilibrium and the prediction's residual."""
-        loose = bool(self._known) and not (asked or self._careful)
+        loose = bool(self._states) and not (asked or self._careful)
         tolerance = self._options.between if loose else self._options.tolerance
         pose, pressure = self._predict(pressure, volume)
         done = correct(self._system, self._chart, pose, pressure, tolerance, volume)
@@ -194,13 +153,13 @@ class Path:
         None where that leads nowhere, or to a state that no path leads to: on a path the energy
         U - p V sinks by the integral of V over p. What it sinks by more is set free in a jump.
         """
-        if not self._known:
+        if not self._states:
             return None
-        last = self._known[-1]
+        last = self._states[-1]
         done = descend(self._system, self._chart, last.pose, pressure, self._options.tolerance)
         outcome: str = done.outcome
         if outcome == "converged":
-            sunk = _potential(last.forces, last.pressure) - _potential(done.forces, pressure)
+            sunk = potential(last.forces, last.pressure) - potential(done.forces, pressure)
             free = sunk - done.forces.volume * (pressure - last.pressure)
             if free > _FREE * last.forces.energy:
                 outcome = "unstable"
@@ -217,36 +176,36 @@ class Path:
 
     def _keep(self, done: Correction, asked: bool, *, by_volume: bool = False) -> Equilibrium:
         compliance = np.nan
-        if by_volume or len(self._known) < 2:
+        if by_volume or len(self._states) < 2:
             flow = done.flow
             compliance = float(done.forces.volume_gradient @ flow)
-            if not self._known:
+            if not self._states:
                 x = done.pose.x
                 self._flow = self._chart.increment(done.pose, self._system.expand(x, flow))
-        found = Equilibrium(
+        state = Equilibrium(
             done.pressure, done.pose, done.forces, compliance, done.residual, asked, done.negative
         )
-        self._known = [*self._known[-_ORDER:], found]
-        return found
+        self._states = [*self._states[-_ORDER:], state]
+        return state
 
     def _predict(self, pressure: float, volume: float | None) -> tuple[Pose, float]:
         """Extrapolate the last states: a polynomial in the pressure, or in the volume."""
-        chart, known = self._chart, self._known
-        if not known:
+        chart, states = self._chart, self._states
+        if not states:
             return chart.taut(2.0 * self._system.mesh.actuator.gauze.transition), pressure
-        last = known[-1]
-        if len(known) == 1:
+        last = states[-1]
+        if len(states) == 1:
             return chart.move(last.pose, self._flow * (pressure - last.pressure)), pressure
         by_pressure = volume is None
         at = pressure if volume is None else volume
-        places = np.array([e.pressure if by_pressure else e.forces.volume for e in known])
+        places = np.array([e.pressure if by_pressure else e.forces.volume for e in states])
         weights = lagrange(places, at)
         increment = sum(
             w * chart.difference(last.pose, e.pose)
-            for w, e in zip(weights[:-1], known[:-1], strict=True)
+            for w, e in zip(weights[:-1], states[:-1], strict=True)
         )
         if not by_pressure:
-            pressure = float(weights @ np.array([e.pressure for e in known]))
+            pressure = float(weights @ np.array([e.pressure for e in states]))
         return chart.move(last.pose, np.asarray(increment)), pressure
 
     def _by_volume(self, blocked: float, step: float) -> Iterator[Equilibrium]:
@@ -255,58 +214,58 @@ class Path:
         Returns once the pressure is above ``blocked`` (nothing was in the way but a hard step)
         or sets ``critical``.
         """
-        if len(self._known) < 2:
+        if len(self._states) < 2:
             raise self._failure(blocked)
         self._careful = True
-        before, last = self._known[-2:]
+        before, last = self._states[-2:]
         softness = (last.forces.volume - before.forces.volume) / (last.pressure - before.pressure)
         grow = max(softness * step, 1e-5 * last.forces.volume)
         least = 1e-3 * grow
         end = np.inf
         for _ in range(_LIMIT_STEPS):
-            before = self._known[-1]
+            before = self._states[-1]
             volume = before.forces.volume + grow
-            found, first = self._try(before.pressure, min(volume, end), self.critical is not None)
-            if found is None:
+            state, first = self._try(before.pressure, min(volume, end), self.critical is not None)
+            if state is None:
                 grow *= 0.4
                 if grow < least:
                     self._give_up(blocked)
                     return
                 continue
             if self.critical is not None:
-                yield found
+                yield state
                 if volume >= end:
                     return
-            elif found.compliance < 0.0 and _spread(self._known) > _FLAT:
-                self._known.pop()  # too far beyond the maximum to say where it is
+            elif state.compliance < 0.0 and spread(self._states) > _FLAT:
+                self._states.pop()  # too far beyond the maximum to say where it is
                 grow *= 0.4
                 continue
-            elif found.compliance < 0.0:
-                self.critical = Critical("limit point", _maximum(self._known))
+            elif state.compliance < 0.0:
+                self.critical = Critical("limit point", peak(self._states))
                 end = before.forces.volume * (1.0 + self._options.beyond)
                 if volume >= end:
                     return
-                yield found
-            elif found.negative:
+                yield state
+            elif state.negative:
                 self.critical = Critical("bifurcation", before.pressure)
                 return
-            elif found.pressure > blocked:
-                yield found
+            elif state.pressure > blocked:
+                yield state
                 return
             else:
-                yield found
+                yield state
             grow *= min(2.0, _rate(self._options.aim / first))
         self._give_up(blocked)
 
     def _give_up(self, blocked: float) -> None:
         """End the path: where stability is known to be lost ahead, that is what ended it."""
         if self.critical is None and self._unstable:
-            self.critical = Critical("bifurcation", self._known[-1].pressure)
+            self.critical = Critical("bifurcation", self._states[-1].pressure)
         if self.critical is None:
             raise self._failure(blocked)
 
     def _failure(self, pressure: float) -> NotConverged:
-        reached = self._known[-1].pressure if self._known else 0.0
+        reached = self._states[-1].pressure if self._states else 0.0
         last = self.history[-1]
         return NotConverged(
             f"no equilibrium found at {10.0 * pressure:.3f} bar (last outcome: {last.outcome}); "
@@ -318,36 +277,6 @@ class Path:
     _flow: FloatArray  # per MPa, at the first state
 
 
-def _potential(forces: Forces, pressure: float) -> float:
-    return forces.energy - pressure * forces.volume
-
-
-def lagrange(places: FloatArray, at: float) -> FloatArray:
-    """Weights of the polynomial through values at ``places`` (n,), taken at ``at``: (n,)."""
-    apart = places[:, None] - places
-    np.fill_diagonal(apart, 1.0)
-    ahead = np.broadcast_to(at - places, apart.shape).copy()
-    np.fill_diagonal(ahead, 1.0)
-    weights: FloatArray = (ahead / apart).prod(axis=1)
-    return weights
-
-
 def _rate(share: float) -> float:
     """How much longer the next step may be when the prediction was off by 1 / share of the aim."""
     return float(np.clip(min(share, 1e9) ** (2.0 / 3.0), _SHRINK, _GROW))
-
-
-def _spread(known: Sequence[Equilibrium]) -> float:
-    """How much the pressures of the last three states differ, over the highest."""
-    pressures = [e.pressure for e in known[-3:]]
-    return (max(pressures) - min(pressures)) / max(pressures)
-
-
-def _maximum(known: Sequence[Equilibrium]) -> float:
-    """Highest pressure of the parabola through the last three states over their volumes."""
-    last = known[-3:]
-    volumes = np.array([e.forces.volume for e in last])
-    pressures = np.array([e.pressure for e in last])
-    middle, width = volumes.mean(), np.ptp(volumes)
-    c, b, a = np.polynomial.polynomial.polyfit((volumes - middle) / width, pressures, 2)
-    return float(max(c - b * b / (4.0 * a), pressures.max())) if a < 0.0 else float(pressures.max())

@@ -1,4 +1,4 @@
-"""What is read off a deformed actuator: angles, lines, diameters, stretches, threads, contact.
+"""Readings off a deformed actuator: angles, lines, diameters, stretches, threads, contact.
 
 All quantities are those of the whole tube, also where only half of it is modelled.
 """
@@ -22,7 +22,7 @@ _NEAR = 0.02  # of the diameter: surfaces this near touch
 
 
 @dataclass(frozen=True)
-class Shape:
+class TubeLines:
     """Lines and sections along the tube; S rings.
 
     Attributes
@@ -71,8 +71,8 @@ class Sector:
 
 
 @dataclass(frozen=True)
-class Gauze:
-    """State of the threads.
+class ThreadTension:
+    """How the threads are pulled.
 
     Attributes
     ----------
@@ -90,14 +90,14 @@ class Gauze:
     slack_share: float
 
 
-def lines(mesh: Mesh, x: FloatArray) -> Shape:
+def lines(mesh: Mesh, x: FloatArray) -> TubeLines:
     """Read lines and sections off nodal positions x."""
     facing, far, side, other = (
         surface_line(mesh, x, np.radians(phi)) for phi in (270.0, 90.0, 0.0, 180.0)
     )
     centre = 0.25 * (facing + far + side + other)
     reach = np.linalg.norm(x[:, mesh.outer_ring] - centre[:, None], axis=2).max(axis=1)
-    return Shape(
+    return TubeLines(
         z=mesh.z,
         centre=centre,
         facing=facing,
@@ -146,9 +146,9 @@ def surface_line(mesh: Mesh, x: FloatArray, phi: float) -> FloatArray:
     return line
 
 
-def sectors(mesh: Mesh, shape: Shape) -> tuple[Sector, ...]:
+def sectors(mesh: Mesh, shape: TubeLines) -> tuple[Sector, ...]:
     """Rigid motions of the wrapped sectors."""
-    found = []
+    motions = []
     for start, end in mesh.actuator.wrapped:
         middle = 0.5 * (start + end)
         k = int(np.clip(np.searchsorted(mesh.z, middle) - 1, 0, mesh.layers - 1))
@@ -156,8 +156,8 @@ def sectors(mesh: Mesh, shape: Shape) -> tuple[Sector, ...]:
         before, after = shape.rotation[k], shape.rotation[k + 1]
         turn = rotation_matrix(share * rotation_vector(after @ before.T))
         centre = (1.0 - share) * shape.centre[k] + share * shape.centre[k + 1]
-        found.append(Sector(start, end, centre, turn @ before))
-    return tuple(found)
+        motions.append(Sector(start, end, centre, turn @ before))
+    return tuple(motions)
 
 
 def joint_angles(mesh: Mesh, x: FloatArray, wrapped: tuple[Sector, ...]) -> FloatArray:
@@ -194,22 +194,22 @@ def touches(mesh: Mesh, x: FloatArray) -> bool:
     return bool((apart > mesh.actuator.radius).any())
 
 
-def threads(mesh: Mesh, x: FloatArray) -> Gauze:
+def threads(mesh: Mesh, x: FloatArray) -> ThreadTension:
     """State of the threads."""
-    law = mesh.actuator.gauze
+    material = mesh.actuator.gauze
     faces = np.arange(mesh.layers)[:, None, None] * (mesh.ring + mesh.mid) + mesh.outer
     nodes = x.reshape(-1, 3)[faces.reshape(-1, mesh.outer.shape[1])]
     force = {}
     for name, family in (("axial", mesh.axial), ("hoop", mesh.hoop)):
         lam = gauze.stretch(family, nodes)
-        pull = law.stiffness * gauze.law(law, lam)[1]
+        pull = material.stiffness * gauze.tension_law(material, lam)[1]
         force[name] = np.where(family.weight > 0.0, pull, 0.0)
         if name == "axial":
             slack_points = (lam < 1.0) & (family.weight > 0.0)
             weight = family.weight
     slack = slack_points.mean(axis=1) >= 0.5
     total = float(weight.sum())
-    return Gauze(
+    return ThreadTension(
         axial_force=float(force["axial"].max()),
         hoop_force=float(force["hoop"].max()),
         slack=slack.reshape(mesh.layers, mesh.around),

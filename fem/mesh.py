@@ -11,24 +11,21 @@ do not exist and stay zero.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fem.actuator import Actuator
-from fem.element import Reference, face_nodes, natural_nodes, reference
+from fem.element import Reference, face_nodes, reference
 from fem.gauze import Threads
-from fem.meshsize import DEFAULT_MESH, MeshSize, one_brick, start_angle
+from fem.layer import across, layer_bricks, number_nodes, positions, symmetry
+from fem.meshlines import make_columns, stations, stretched
+from fem.meshsize import DEFAULT_MESH, MeshSize, one_brick
 from fem.weave import axial_threads, hoop_threads
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-
-_GIVE = 0.1  # how much sizes may be stretched to fill a length
-_SHRINK = 0.7  # of a layer's height: the most that a changed length takes off
-_HALF = np.pi
 
 
 @dataclass(frozen=True)
@@ -124,11 +121,14 @@ def make_mesh(
     half = actuator.in_plane and not whole
     columns = make_columns(actuator, size, half)
     around = len(columns) - 1
-    places = _places(size, columns, half)
-    bricks = _bricks(places, size, around)
+    places = number_nodes(size, columns, half)
+    bricks = layer_bricks(places, size, around)
     m = face_nodes(size.kind)
-    ring_at, mid_at = _xy(actuator, places.ring), _xy(actuator, places.mid)
-    z, segment = _stations(actuator, size) if like is None else _stretched(like, actuator)
+    ring_at, mid_at = across(actuator, places.ring), across(actuator, places.mid)
+    if like is None:
+        z, segment = stations(actuator, size)
+    else:
+        z, segment = stretched(like.z, like.segment, actuator), like.segment
     return Mesh(
         actuator=actuator,
         size=size,
@@ -146,13 +146,13 @@ def make_mesh(
         ),
         outer=bricks[-around:, -m:],
         inner=bricks[:around, :m],
-        fixed_ring=_symmetry(ring_at, half),
-        fixed_mid=_symmetry(mid_at, half),
+        fixed_ring=symmetry(ring_at, half),
+        fixed_mid=symmetry(mid_at, half),
         half=half,
         outer_ring=np.flatnonzero([p[0] == 1.0 for p in places.ring]),
         z=z,
         segment=segment,
-        X=_positions(z, ring_at, mid_at),
+        X=positions(z, ring_at, mid_at),
         **_woven(actuator, size, z, segment, columns),
     )
 
@@ -163,8 +163,8 @@ def remesh(mesh: Mesh, actuator: Actuator, *, gauze: bool = True) -> Mesh:
     The tube's section, the number of windows and the plane of symmetry must be the same. Without
     the ``gauze`` the threads stay as they were, for readings of lines and angles alone.
     """
-    z, _ = _stretched(mesh, actuator)
-    X = _positions(z, mesh.X[0, : mesh.ring, :2], mesh.X[0, mesh.ring :, :2])
+    z = stretched(mesh.z, mesh.segment, actuator)
+    X = positions(z, mesh.X[0, : mesh.ring, :2], mesh.X[0, mesh.ring :, :2])
     changed = replace(mesh, actuator=actuator, z=z, X=X)
     if not gauze:
         return changed
@@ -177,35 +177,6 @@ def alike(a: Mesh, b: Mesh) -> bool:
         return False
     narrowest = np.diff(a.columns).min()
     return bool(np.abs(a.columns - b.columns).max() < 0.5 * narrowest)
-
-
-def _stretched(mesh: Mesh, actuator: Actuator) -> tuple[FloatArray, IntArray]:
-    """Stations of a mesh, stretched for a changed actuator.
-
-    High layers give way and low ones keep their heights, as long as that leaves something of
-    them: next to a cut's edge the tube is deformed as it was, however long its sectors are.
-    """
-    edges = [edge for sector in actuator.wrapped for edge in sector]
-    z = np.zeros_like(mesh.z)
-    for k, (start, end) in enumerate(pairwise(edges)):
-        own = np.flatnonzero(mesh.segment == k)
-        if own.size:
-            h = mesh.heights[own]
-            share = h * ((end - start) - h.sum()) / float(h @ h)
-            if share.min() < -_SHRINK:
-                share = np.full(len(h), (end - start) / h.sum() - 1.0)
-            z[own[0] + 1 : own[-1] + 2] = start + np.cumsum(h * (1.0 + share))
-    return z, mesh.segment
-
-
-def _positions(z: FloatArray, ring_at: FloatArray, mid_at: FloatArray) -> FloatArray:
-    """Nodes at rest, of rings at z and of the mid sections between them."""
-    X = np.zeros((len(z), len(ring_at) + len(mid_at), 3))
-    X[:, : len(ring_at), :2] = ring_at
-    X[:, : len(ring_at), 2] = z[:, None]
-    X[:-1, len(ring_at) :, :2] = mid_at
-    X[:-1, len(ring_at) :, 2] = 0.5 * (z[1:] + z[:-1])[:, None]
-    return X
 
 
 class _Woven(TypedDict):
@@ -223,148 +194,3 @@ def _woven(
         "axial": axial_threads(actuator, size, np.diff(z), sectors, columns),
         "hoop": hoop_threads(actuator, size, z, columns),
     }
-
-
-@dataclass(frozen=True)
-class _Places:
-    """Nodes of a ring and of a mid section as (share through the wall, phi), in order."""
-
-    ring: list[tuple[float, float]]
-    mid: list[tuple[float, float]]
-    ring_index: dict[tuple[int, int], int]
-    mid_index: dict[tuple[int, int], int]
-
-
-def _places(size: MeshSize, columns: FloatArray, half: bool) -> _Places:
-    """Put the nodes of a section in order, known by their place on a grid of half bricks."""
-    step = 1 if size.kind == "hex20" else 2
-    deep = 2 * size.through
-    phi = np.interp(np.arange(0.0, len(columns) - 0.75, 0.5), np.arange(len(columns)), columns)
-    places = _Places([], [], {}, {})
-    for j in range(0, len(phi) if half else len(phi) - 1, step):
-        for i in range(0, deep + 1, step):
-            where = (i / deep, float(phi[j]))
-            if i % 2 == 0 or j % 2 == 0:
-                places.ring_index[i, j] = len(places.ring)
-                places.ring.append(where)
-            if step == 1 and i % 2 == 0 and j % 2 == 0:
-                places.mid_index[i, j] = len(places.mid)
-                places.mid.append(where)
-    return places
-
-
-def make_columns(actuator: Actuator, size: MeshSize, half: bool) -> FloatArray:
-    """Cut the circumference into bricks that end where the uncut sectors do.
-
-    Across such an edge the strain has a kink, and at the corners of the cut it is singular:
-    bricks that end there and are narrow beside it are worth twice their number elsewhere. Edges
-    nearer to each other than such a brick, or to the plane of symmetry, share a cut.
-
-    Returns
-    -------
-    (around + 1,) rad, from the side that faces the object
-    """
-    whole = _HALF if half else 2.0 * _HALF
-    widest = _HALF / size.around
-    if size.beside == 0.0:
-        return start_angle() + np.linspace(0.0, whole, round(whole / widest) + 1)
-    edges = []
-    for window in actuator.windows:
-        reach = 0.5 * (window.alpha + actuator.gauze.allowance)
-        for edge in (window.center - reach, window.center + reach):
-            turn = (edge - start_angle()) % (2.0 * _HALF)
-            edges.append(min(turn, 2.0 * _HALF - turn) if half else turn)
-    cuts = _merged(sorted(edges), size.beside, whole)
-    ends = [0.0, *cuts, whole]
-    heights = [
-        _graded(
-            b - a,
-            size.beside if k > 0 else widest,
-            size.beside if k < len(cuts) else widest,
-            widest,
-            growth=2.0,
-        )
-        for k, (a, b) in enumerate(pairwise(ends))
-    ]
-    columns = np.concatenate([[0.0], np.cumsum(np.concatenate(heights))])
-    columns[-1] = whole
-    return start_angle() + columns
-
-
-def _merged(edges: list[float], apart: float, whole: float) -> list[float]:
-    """Give one place for all edges that lie within ``apart``, none that near to the ends."""
-    groups: list[list[float]] = []
-    for edge in edges:
-        if groups and edge - groups[-1][0] <= apart:
-            groups[-1].append(edge)
-        else:
-            groups.append([edge])
-    middles = [sum(group) / len(group) for group in groups]
-    return [m for m in middles if 0.5 * apart < m < whole - 0.5 * apart]
-
-
-def _bricks(places: _Places, size: MeshSize, around: int) -> IntArray:
-    ring, mid = len(places.ring), len(places.mid)
-    wide = max(j for _, j in places.ring_index) + (1 if size.kind == "hex20" else 2)
-    rows = []
-    for layer in range(size.through):
-        for k in range(around):
-            row = []
-            for xi, eta, zeta in natural_nodes(size.kind):
-                at = (2 * layer + 1 + xi, (2 * k + 1 + eta) % wide)
-                if zeta == 0:
-                    row.append(ring + places.mid_index[at])
-                else:
-                    row.append(places.ring_index[at] + (ring + mid if zeta > 0 else 0))
-            rows.append(row)
-    return np.array(rows)
-
-
-def _xy(actuator: Actuator, places: list[tuple[float, float]]) -> FloatArray:
-    share, phi = np.array(places).reshape(-1, 2).T
-    r = actuator.radius - actuator.wall * (1.0 - share)
-    xy: FloatArray = np.column_stack([r * np.cos(phi), r * np.sin(phi)])
-    return xy
-
-
-def _symmetry(xy: FloatArray, half: bool) -> NDArray[np.bool_]:
-    fixed = np.zeros((len(xy), 3), dtype=bool)
-    if half:
-        fixed[:, 0] = np.abs(xy[:, 0]) < 1e-9 * np.abs(xy).max(initial=1.0)
-    return fixed
-
-
-def _stations(actuator: Actuator, size: MeshSize) -> tuple[FloatArray, IntArray]:
-    """Places of the rings, and the segment of each layer."""
-    k = actuator.diameter / 20.0
-    z, segment = [0.0], list[int]()
-    edges = [edge for sector in actuator.wrapped for edge in sector]
-    for number, (start, end) in enumerate(pairwise(edges)):
-        length = end - start
-        if length < 1e-9 * actuator.length:
-            continue  # a window right at the clamped end or at the plug
-        first = size.end if number == 0 else size.edge
-        last = size.end if number == len(edges) - 2 else size.edge
-        most = size.window if number % 2 else size.wrapped
-        heights = _graded(length, first * k, last * k, most * k, size.growth)
-        places = start + np.cumsum(heights)
-        places[-1] = end
-        z.extend(places.tolist())
-        segment.extend([number] * len(heights))
-    return np.array(z), np.array(segment)
-
-
-def _graded(length: float, first: float, last: float, most: float, growth: float) -> FloatArray:
-    """Sizes that grow from both ends, shrunk or a little stretched to fill the length."""
-    left, right = list[float](), list[float]()
-    a, b, total = min(first, most), min(last, most), 0.0
-    while total * (1.0 + _GIVE) < length * (1.0 - 1e-9):
-        if a <= b:
-            left.append(a)
-            total += a
-            a = min(growth * a, most)
-        else:
-            right.append(b)
-            total += b
-            b = min(growth * b, most)
-    return np.array(left + right[::-1]) * (length / total)

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fem import gauze, solid
-from fem.gauze import Threads
+from fem.items import Batch, MakeItem, Sums
 from fem.mesh import Mesh
 from fem.pattern import Pattern, Unknowns, make_pattern
 from fem.pivot import Pivot
 from fem.plug import Plug
-from fem.pressure import face_volumes
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -32,20 +31,30 @@ class Part:
         Reduced couplings to the ring ahead.
     next : (far, far)
         What has been added to the next pivot, its upper triangle.
+    items : tuple of Item
+        What contributes to the energy.
     stiffness : (through, 6, around, column)
         Of the bricks, for the pairs (i, k), layers one after another.
-    internal, gradient : (layers + 1, ring + mid, 3)
-        This part's nodal forces: of the stored energy (N) and of a unit pressure (mm^2).
-    energy, volume, least_J : float
+    sums : Sums
+        Energy, volume and nodal forces of this part.
     """
 
-    def __init__(self, mesh: Mesh, unknowns: Unknowns, layers: range, *, from_root: bool) -> None:
+    def __init__(
+        self,
+        mesh: Mesh,
+        unknowns: Unknowns,
+        layers: range,
+        items: Sequence[MakeItem],
+        *,
+        from_root: bool,
+    ) -> None:
         self.mesh, self.unknowns, self.from_root = mesh, unknowns, from_root
         self.order = layers if from_root else layers[::-1]
         n = mesh.bricks.shape[1]
         self.chunks = _chunks(self.order, max(1, _CHUNK // len(mesh.bricks)))
         self.column = max((len(c) for c in self.chunks), default=0) * n * n
-        self.work = solid.Workspace()
+        self.items = tuple(make(mesh) for make in items)
+        self.sums = Sums(mesh)
 
         def pattern(*, clamped: bool) -> Pattern:
             return make_pattern(
@@ -69,72 +78,32 @@ class Part:
         self.pivots = {layer: Pivot(size) for layer, size in sizes.items()}
         self.couplings = {layer: np.empty((size, plain.far)) for layer, size in sizes.items()}
         self.next = np.zeros((plain.far, plain.far))
-        self.internal = np.zeros_like(mesh.X)
-        self.gradient = np.zeros_like(mesh.X)
-        self.energy = self.volume = 0.0
-        self.least_J = np.inf
 
     def _is_plug(self, layer: int) -> bool:
         return layer == self.mesh.layers - 1
 
     def evaluate(self, x: FloatArray, pressure: float, plug: Plug | None) -> None:
         """Sum this part's forces; with ``plug`` factor its layers too."""
-        self.internal[...] = 0.0
-        self.gradient[...] = 0.0
+        mesh, n = self.mesh, self.mesh.bricks.shape[1]
+        self.sums.clear()
         self.next[...] = 0.0
-        self.energy = self.volume = 0.0
-        self.least_J = np.inf
         for chunk in self.chunks:
-            self._add_forces(chunk, x, pressure, plug is not None)
-            if not self.least_J > 0.0:
+            L = len(chunk)
+            entries = self.stiffness[..., : L * n * n]
+            stiffness = entries.reshape(mesh.size.through, 6, mesh.around, L, n, n)
+            wanted = None if plug is None else stiffness
+            self._add_items(Batch(mesh, chunk, x.reshape(-1, 3), pressure, wanted, self.sums))
+            if not self.sums.least_J > 0.0:
                 return
             if plug is not None:
                 for layer in chunk if self.from_root else chunk[::-1]:
                     self._eliminate(layer, layer - chunk.start, x, pressure, plug)
 
-    def _add_forces(self, chunk: range, x: FloatArray, pressure: float, tangent: bool) -> None:
-        mesh = self.mesh
-        c, n, m, L = mesh.around, mesh.bricks.shape[1], mesh.outer.shape[1], len(chunk)
-        first = np.asarray(chunk) * (mesh.ring + mesh.mid)
-        flat = x.reshape(-1, 3)
-        internal, gradient = self.internal.reshape(-1, 3), self.gradient.reshape(-1, 3)
-        stiffness = self.stiffness[..., : L * n * n]
-        for deep in range(mesh.size.through):
-            nodes = mesh.bricks[deep * c : (deep + 1) * c, :, None] + first  # (c, n, L)
-            state = solid.respond(
-                mesh.actuator.rubber,
-                mesh.brick[deep],
-                mesh.heights[chunk.start : chunk.stop],
-                np.ascontiguousarray(np.moveaxis(flat[nodes], 3, 0)),
-                self.work,
-                stiffness[deep].reshape(6, c, L, n * n) if tangent else None,
-                mean_dilatation=mesh.size.mean_dilatation,
-            )
-            self.least_J = min(self.least_J, state.least_J)
-            if not self.least_J > 0.0:
+    def _add_items(self, batch: Batch) -> None:
+        for item in self.items:
+            item.add(batch)
+            if not self.sums.least_J > 0.0:
                 return
-            self.energy += state.energy
-            _scatter(internal, nodes, state.force)
-        faces = slice(chunk.start * c, chunk.stop * c)
-        outer = first[:, None, None] + mesh.outer  # (L, c, m)
-        skin = stiffness[-1].reshape(6, c, L, n, n)[..., n - m :, n - m :]
-        for family in (mesh.axial, mesh.hoop):
-            threads = Threads(family.gradient[faces], family.weight[faces])
-            pull = gauze.respond(mesh.actuator.gauze, threads, flat[outer.reshape(-1, m)], tangent)
-            self.energy += float(pull.energy.sum())
-            _scatter(internal, outer, np.moveaxis(pull.force, 2, 0))
-            if pull.stiffness is not None:
-                skin += pull.stiffness.reshape(L, c, 6, m, m).transpose(2, 1, 0, 3, 4)
-        inner = (mesh.inner.T[:, :, None] + first).reshape(m, -1)  # (m, c L)
-        volume, dV, h = face_volumes(np.ascontiguousarray(np.moveaxis(flat[inner], 2, 0)), tangent)
-        self.volume += float(volume.sum())
-        _scatter(gradient, inner, dV)
-        if h is not None:
-            wall = stiffness[0].reshape(6, c, L, n, n)[..., :m, :m]
-            h = pressure * np.moveaxis(h.reshape(3, m, m, c, L), (3, 4), (1, 2))
-            wall[1] -= h[2]
-            wall[2] += h[1]
-            wall[4] -= h[0]
 
     def _eliminate(
         self, layer: int, place: int, x: FloatArray, pressure: float, plug: Plug
@@ -150,7 +119,7 @@ class Part:
         own_coupling = step[b * b : b * (b + r)].reshape(b, r)
         added = self.next[: pattern.behind, : pattern.behind]
         if self._is_plug(layer):
-            load = (self.internal[-1] - pressure * self.gradient[-1])[: self.mesh.ring]
+            load = (self.sums.internal[-1] - pressure * self.sums.gradient[-1])[: self.mesh.ring]
             own, own_coupling = plug.condense(x, load, pressure, own, own_coupling)
             added = added[:0, :0]  # there is no layer before it
         np.copyto(coupling, own_coupling)
@@ -257,12 +226,3 @@ def _chunks(order: range, most: int) -> list[range]:
     cuts = [round(len(order) * k / count) for k in range(count + 1)] if count else []
     chunks = [order[a:b] for a, b in pairwise(cuts)]
     return [chunk if chunk.step > 0 else chunk[::-1] for chunk in chunks]
-
-
-def _scatter(into: FloatArray, nodes: IntArray, values: FloatArray) -> None:
-    """Add values (3, ...) to the rows ``nodes`` (...) of ``into`` (N, 3)."""
-    low = int(nodes.min())
-    size = int(nodes.max()) - low + 1
-    at = nodes.ravel() - low
-    for i in range(3):
-        into[low : low + size, i] += np.bincount(at, values[i].ravel(), size)

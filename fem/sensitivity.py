@@ -8,22 +8,22 @@ its own segment of the tube alone, one pair of forces serves all joints.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fem import blas, measure
-from fem.actuator import Actuator, Window
+from fem.actuator import Actuator
 from fem.assembly import Forces, System
 from fem.errors import FemError
+from fem.items import MakeItem
 from fem.mesh import Mesh, alike, make_mesh, remesh
+from fem.parameters import LENGTH_STEP, Parameter, families
 from fem.transfer import settle
 
 FloatArray = NDArray[np.float64]
-
-_ANGLE, _LENGTH = 1e-5, 1e-4  # steps of the differences: rad, mm
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,13 @@ def flow_to(rates: Sensitivities, known: Actuator, new: Actuator, rise: float) -
 
 
 def sensitivities(
-    mesh: Mesh, x: FloatArray, pressure: float, threads: int = 2, *, angles: bool = True
+    mesh: Mesh,
+    x: FloatArray,
+    pressure: float,
+    threads: int = 2,
+    *,
+    angles: bool = True,
+    extra: Sequence[MakeItem] = (),
 ) -> Sensitivities:
     """Differentiate an equilibrium.
 
@@ -114,6 +120,8 @@ def sensitivities(
     angles : bool
         Whether to differentiate the joint angles and the volume too, half of the work; they are
         NaN otherwise.
+    extra : sequence of MakeItem
+        What contributes to the energy beside bricks, gauze and air; see `fem.items`.
 
     Raises
     ------
@@ -122,7 +130,7 @@ def sensitivities(
     """
     count = len(mesh.actuator.windows)
     with blas.one_thread():
-        system = System(mesh, threads)
+        system = System(mesh, threads, extra)
         try:
             forces, inverse = system.factor(x, pressure)
             if inverse is None:
@@ -131,7 +139,7 @@ def sensitivities(
             if np.linalg.norm(forces.residual(pressure)) > 1e-4 * push:
                 raise FemError("these positions are not in equilibrium")
 
-            changes = _changes(count)
+            changes = families(count)
             rhs = [forces.volume_gradient]
             for family in changes:
                 rhs += _pulls(system, x, pressure, family)
@@ -153,37 +161,9 @@ def sensitivities(
             system.close()
 
 
-@dataclass(frozen=True)
-class _Change:
-    """A parameter: which segment of the tube it changes, and how; ``step`` is for differences.
-
-    None stands for the whole tube.
-    """
-
-    segment: int | None
-    step: float
-    change: Callable[[Actuator, float], Actuator]
-
-
-def _changes(count: int) -> tuple[tuple[_Change, ...], ...]:
-    """Families of parameters that can be changed at once: no two have a ring in common."""
-    windows, wrapped = range(1, 2 * count, 2), range(0, 2 * count + 1, 2)
-    return (
-        # The bricks of the whole tube end where the sectors do: they move with each alpha.
-        *((_Change(None, _ANGLE, _alpha(k // 2)),) for k in windows),
-        tuple(_Change(k, _LENGTH, _stretch(k)) for k in windows),
-        tuple(_Change(k, _LENGTH, _stretch(k)) for k in wrapped),
-        (_Change(None, _LENGTH, _thicken),),
-    )
-
-
 def _enclosed(mesh: Mesh, x: FloatArray) -> float:
     """Volume enclosed at nodal positions x, mm^3 (half of it in a half model)."""
     return System(mesh, threads=1).forces(x).volume
-
-
-def _thicken(actuator: Actuator, amount: float) -> Actuator:
-    return replace(actuator, wall=actuator.wall + amount)
 
 
 def _changed(mesh: Mesh, actuator: Actuator) -> Mesh:
@@ -193,7 +173,7 @@ def _changed(mesh: Mesh, actuator: Actuator) -> Mesh:
 
 
 def _pulls(
-    system: System, x: FloatArray, pressure: float, family: Sequence[_Change]
+    system: System, x: FloatArray, pressure: float, family: Sequence[Parameter]
 ) -> list[FloatArray]:
     """-dR/dp of a family's parameters, each (count,).
 
@@ -211,7 +191,7 @@ def _pulls(
         near = _changed(mesh, actuator)
         # The clamped ring and the plug's change as well.
         at = settle(x, near, mesh)
-        ends.append(System(near, threads=1).forces(at))
+        ends.append(System(near, 1, system.extra).forces(at))
     residuals = [forces.residual(pressure) for forces in ends]
     pull = -(residuals[0] - residuals[1]) / (2.0 * step)
     return [np.where(_felt(system, parameter.segment), pull, 0.0) for parameter in family]
@@ -235,14 +215,14 @@ def _rate(
     x: FloatArray,
     forces: Forces,
     du: FloatArray,
-    parameter: _Change | None,
+    parameter: Parameter | None,
     angles: bool,
 ) -> Rate:
     """Read a rate off the flow du (count,); no parameter stands for the pressure."""
     mesh = system.mesh
     moved = system.expand(x, du)
     # The angles by differences along the known motion.
-    size = min(1e-4 / max(float(np.abs(moved).max()), 1e-12), _LENGTH if parameter else 1.0)
+    size = min(1e-4 / max(float(np.abs(moved).max()), 1e-12), LENGTH_STEP if parameter else 1.0)
     ends, theta, grown = [], [], 0.0
     for sign in (1.0, -1.0):
         near = mesh
@@ -269,28 +249,3 @@ def _rate(
 
 def _angles(mesh: Mesh, x: FloatArray) -> FloatArray:
     return measure.joint_angles(mesh, x, measure.sectors(mesh, measure.lines(mesh, x)))
-
-
-def _alpha(number: int) -> Callable[[Actuator, float], Actuator]:
-    def change(actuator: Actuator, amount: float) -> Actuator:
-        windows = list(actuator.windows)
-        windows[number] = replace(windows[number], alpha=windows[number].alpha + amount)
-        return replace(actuator, windows=tuple(windows))
-
-    return change
-
-
-def _stretch(segment: int) -> Callable[[Actuator, float], Actuator]:
-    """Lengthen segment 2 k (wrapped sector k) or 2 k + 1 (window k); all beyond moves on."""
-
-    def change(actuator: Actuator, amount: float) -> Actuator:
-        def moved(number: int, w: Window) -> Window:
-            own = 2 * number + 1
-            if own == segment:
-                return replace(w, centre=w.centre + 0.5 * amount, openF=w.openF + amount)
-            return replace(w, centre=w.centre + amount) if own > segment else w
-
-        windows = tuple(moved(number, w) for number, w in enumerate(actuator.windows))
-        return replace(actuator, length=actuator.length + amount, windows=windows)
-
-    return change

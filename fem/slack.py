@@ -49,7 +49,7 @@ class Switching:
         lam = np.linalg.norm(g, axis=2)
         self._along = g / lam[..., None]
         self._lam = lam
-        _, self._force, self._slope = gauze.law(mesh.actuator.gauze, lam)
+        _, self._force, self._slope = gauze.tension_law(mesh.actuator.gauze, lam)
         self._size = np.linalg.norm(self._threads.gradient, axis=2)
         self._chosen = np.zeros(lam.shape, dtype=bool)
         self._points = np.zeros(0, dtype=np.int64)
@@ -72,7 +72,7 @@ class Switching:
         used = np.zeros_like(lam)
         for _ in range(_ROUNDS):
             e = self._strain(du)
-            off = gauze.law(law, lam + e)[1] - force - self._slope * e - used
+            off = gauze.tension_law(law, lam + e)[1] - force - self._slope * e - used
             load = np.abs(w * off) * self._size
             if np.linalg.norm(load) <= _ENOUGH * np.linalg.norm(rhs):
                 return du
@@ -116,7 +116,7 @@ class Switching:
         C = self._compliance * w
 
         def excess(e: FloatArray) -> tuple[FloatArray, FloatArray]:
-            _, f, k = gauze.law(law, lam + e)
+            _, f, k = gauze.tension_law(law, lam + e)
             return f - force - slope * e, k - slope
 
         e = start

@@ -9,15 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.element import Reference
-from fem.material import (
-    PAIRS,
-    MooneyRivlin,
-    isochoric_energy,
-    kinematics,
-    stress,
-    tangent,
-    volumetric,
-)
+from fem.material import PAIRS, Kinematics, Law, kinematics
 
 FloatArray = NDArray[np.float64]
 
@@ -57,7 +49,7 @@ class SolidState:
 
 
 def respond(
-    rubber: MooneyRivlin,
+    rubber: Law,
     reference: Reference,
     heights: FloatArray,
     x: FloatArray,
@@ -70,7 +62,7 @@ def respond(
 
     Parameters
     ----------
-    rubber : MooneyRivlin
+    rubber : Law
     reference : Reference
         Of c bricks 2 mm high; all bricks of a column are stretched copies of its own.
     heights : (L,) mm
@@ -83,7 +75,7 @@ def respond(
     mean_dilatation : bool
         Take the volume change from each brick's mean (Simo, Taylor and Pister 1985).
     """
-    _, c, n, L = x.shape
+    _, c, _, L = x.shape
     q = reference.weights.shape[1]
     stretch_z = 2.0 / heights
     # Memory runs (i, column, j, point, layer), so that products see whole matrices.
@@ -96,34 +88,70 @@ def respond(
     if not least > 0.0:
         return SolidState(np.nan, np.zeros_like(x), least)
     volume = reference.weights[..., None] * (0.5 * heights)
-    if mean_dilatation:
-        total = volume.sum(axis=1)
-        mean = (volume * k.J).sum(axis=1) / total
-        U, p, bulk = volumetric(rubber, mean)
-        energy = (volume * isochoric_energy(rubber, k)).sum() + (total * U).sum()
-        p, local_bulk = np.broadcast_to(p[:, None], k.J.shape), 0.0
-    else:
-        U, p, bulk = volumetric(rubber, k.J)
-        energy = (volume * (isochoric_energy(rubber, k) + U)).sum()
-        local_bulk = bulk
+    energy, p, local_bulk, mean_bulk = _dilated(rubber, k, volume, mean_dilatation)
     stresses = work.get("stress", (3, c, 3, q, L))
-    P = stress(rubber, k, p, out=np.moveaxis(stresses, 1, 2))
+    P = rubber.stress(k, p, out=np.moveaxis(stresses, 1, 2))
     P[:, :2] *= 0.5 * heights  # the third column's 2 / h and the volume's h / 2 cancel
     across = np.swapaxes(reference.weighted, 1, 2)
     force = across @ stresses.reshape(3, c, 3 * q, L)
-    state = SolidState(float(energy), force, least)
+    state = SolidState(energy, force, least)
     if stiffness is None:
         return state
     moduli = work.get("tangent", (6, c, 3, 3, q, L))
-    A = tangent(rubber, k, p, local_bulk, out=np.moveaxis(moduli, 1, 3))
+    A = rubber.tangent(k, p, local_bulk, out=np.moveaxis(moduli, 1, 3))
     A[:, :2, :2] *= 0.5 * heights
     A[:, 2, 2] *= stretch_z
     np.matmul(np.swapaxes(moduli.reshape(6, c, 9 * q, L), 2, 3), reference.pairs, out=stiffness)
-    if mean_dilatation:
-        H = np.moveaxis(k.H, 2, 1).copy()
-        H[:, :, :2] *= 0.5 * heights
-        h = across @ H.reshape(3, c, 3 * q, L)  # d(volume)/dx
-        for m, (i, j) in enumerate(PAIRS):
-            product = h[i][:, :, None] * h[j][:, None] * (bulk / total)[:, None, None]
-            stiffness[m] += np.moveaxis(product.reshape(c, n * n, L), 1, 2)
+    if mean_bulk is not None:
+        _stiffen(stiffness, across, k.H, heights, mean_bulk)
     return state
+
+
+def _dilated(
+    rubber: Law, k: Kinematics, volume: FloatArray, mean_dilatation: bool
+) -> tuple[float, FloatArray, float, FloatArray | None]:
+    """Take the volume change at each point, or from the mean of its brick.
+
+    Returns
+    -------
+    energy : float
+        Of all points of volume (c, q, L), N mm.
+    p : (c, q, L)
+        U', MPa.
+    bulk : float
+        U'' at each point, MPa; 0 where the brick's mean counts.
+    mean_bulk : (c, L), or None
+        U'' over the brick's volume, MPa/mm^3, where the mean counts.
+    """
+    if not mean_dilatation:
+        U, p, bulk = rubber.volumetric(k.J)
+        return float((volume * (rubber.isochoric_energy(k) + U)).sum()), p, bulk, None
+    total = volume.sum(axis=1)
+    mean = (volume * k.J).sum(axis=1) / total
+    U, p, bulk = rubber.volumetric(mean)
+    energy = (volume * rubber.isochoric_energy(k)).sum() + (total * U).sum()
+    return float(energy), np.broadcast_to(p[:, None], k.J.shape), 0.0, bulk / total
+
+
+def _stiffen(
+    stiffness: FloatArray, across: FloatArray, H: FloatArray, heights: FloatArray, bulk: FloatArray
+) -> None:
+    """Add what each brick's mean dilatation resists.
+
+    Parameters
+    ----------
+    stiffness : (6, c, L, n * n)
+    across : (c, n, 3 q)
+        Weighted gradients.
+    H : (3, 3, c, q, L)
+    heights : (L,)
+    bulk : (c, L)
+        U'' over the brick's volume, MPa/mm^3.
+    """
+    c, n = across.shape[:2]
+    H = np.moveaxis(H, 2, 1).copy()
+    H[:, :, :2] *= 0.5 * heights
+    h = across @ H.reshape(3, c, -1, len(heights))  # d(volume)/dx
+    for m, (i, j) in enumerate(PAIRS):
+        product = h[i][:, :, None] * h[j][:, None] * bulk[:, None, None]
+        stiffness[m] += np.moveaxis(product.reshape(c, n * n, -1), 1, 2)

@@ -1,4 +1,4 @@
-"""What a campaign of one-joint runs has found."""
+"""The angles that a campaign of one-joint runs has found."""
 
 from __future__ import annotations
 

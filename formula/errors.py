@@ -1,4 +1,4 @@
-"""What can go wrong in this package."""
+"""The errors of this package, both a ValueError."""
 
 
 class OutOfRange(ValueError):

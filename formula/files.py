@@ -36,7 +36,12 @@ def shipped() -> dict[str, bytes]:
 
 
 def load_formula(path: Path | None = None) -> Formula:
-    """Read a formula file, or a formula that comes along by its name; by default the paper's.
+    """Read a formula file.
+
+    Parameters
+    ----------
+    path : Path, optional
+        The file, or the name of a formula that comes along; by default the paper's.
 
     Raises
     ------

@@ -46,6 +46,20 @@ def theta_range_deg(
     """Return the least and the largest angle that some alpha gives at this openF and pressure.
 
     The least is never below zero: the formula turns negative near alpha 180 deg.
+
+    Parameters
+    ----------
+    formula : Formula
+    openF_mm, pressure_bar : array_like
+
+    Returns
+    -------
+    least, most : ndarrays of the broadcast shape, deg
+
+    Raises
+    ------
+    OutOfRange
+        When the formula rises with alpha all over its range.
     """
     low, high = alpha_branch_deg(formula, openF_mm, pressure_bar)
     least = theta_deg(formula, high, openF_mm, pressure_bar)
@@ -56,6 +70,15 @@ def alpha_deg(
     formula: Formula, theta_wanted_deg: ArrayLike, openF_mm: ArrayLike, pressure_bar: ArrayLike
 ) -> NDArray[np.float64]:
     """Alpha that gives the wanted angle; arguments broadcast.
+
+    Parameters
+    ----------
+    formula : Formula
+    theta_wanted_deg, openF_mm, pressure_bar : array_like
+
+    Returns
+    -------
+    ndarray of the broadcast shape, deg
 
     Raises
     ------

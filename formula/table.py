@@ -41,9 +41,15 @@ class Table:
 
 @dataclass(frozen=True)
 class Assignment:
-    """What the look-up gives: one pressure, and for each joint an alpha and the cell's angle.
+    """The cells that the look-up chose: one row, and for each joint a column.
 
-    ``beyond`` says of each joint whether its cell is extrapolated.
+    Attributes
+    ----------
+    pressure_bar : float
+    alpha_closed_deg, theta_deg : tuple of float
+        Of each joint.
+    beyond : tuple of bool
+        Whether each joint's cell is extrapolated.
     """
 
     pressure_bar: float
@@ -60,8 +66,12 @@ def make_table(
 ) -> Table:
     """Tabulate a formula.
 
-    By default the rows and columns are those of the paper's Table 4, as far as the formula's
-    range goes.
+    Parameters
+    ----------
+    formula : Formula
+    openF_mm, pressures_bar, alpha_deg : sequence of float, optional
+        Rows and columns; by default those of the paper's Table 4, as far as the formula's range
+        goes.
 
     Raises
     ------
@@ -102,6 +112,10 @@ def assign(
     ----------
     table : Table
     openF_mm, theta_wanted_deg : sequence of float, one each per joint
+
+    Returns
+    -------
+    Assignment
 
     Raises
     ------

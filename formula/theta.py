@@ -16,7 +16,13 @@ Terms = tuple[tuple[tuple[float, float, float], ...], ...]
 
 @dataclass(frozen=True)
 class RubberLaw:
-    """The law of the rubber that a formula holds for (Mooney-Rivlin, MPa)."""
+    """The law of the rubber that a formula holds for (Mooney-Rivlin).
+
+    Attributes
+    ----------
+    name : str
+    C10_MPa, C01_MPa, K_MPa : float
+    """
 
     name: str
     C10_MPa: float

@@ -1,3 +1,97 @@
-"""From the picture of an object to a pneumatic bending actuator that mirrors its shape."""
+"""From the picture of an object to a pneumatic bending actuator that mirrors its shape.
 
-__version__ = "0.1.0"
+>>> from profiletool import design, files_of
+>>> result = design("bulb.png", height_mm=107.5)
+>>> print(result)
+>>> files = files_of(result)
+
+Lengths are in mm, angles in deg, pressures in bar, as the names say.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from profiletool.records import version as _version
+
+if TYPE_CHECKING:
+    from profiletool.api import derive_formula, design, find_subject, plan_joints, verify_design
+    from profiletool.campaign.derive import CampaignPlan, Derivation
+    from profiletool.campaign.formula_file import formula_file
+    from profiletool.errors import ProfiletoolError
+    from profiletool.files.design_json import load_design
+    from profiletool.joints.plan import Plan
+    from profiletool.outputs import files_of
+    from profiletool.pipeline import Result
+    from profiletool.records.design import Design, Joint
+    from profiletool.records.picture import Picture
+    from profiletool.records.profile import Drawing, Profile
+    from profiletool.records.request import Request, TubeSpec
+    from profiletool.subject.find import Subject
+    from profiletool.verify.check import Check
+
+__version__ = _version.VERSION
+
+__all__ = [
+    "CampaignPlan",
+    "Check",
+    "Derivation",
+    "Design",
+    "Drawing",
+    "Joint",
+    "Picture",
+    "Plan",
+    "Profile",
+    "ProfiletoolError",
+    "Request",
+    "Result",
+    "Subject",
+    "TubeSpec",
+    "derive_formula",
+    "design",
+    "files_of",
+    "find_subject",
+    "formula_file",
+    "load_design",
+    "plan_joints",
+    "verify_design",
+]
+
+# Where each name is at home; a room is loaded when one of its names is first asked for.
+_HOMES = {
+    "CampaignPlan": "campaign.derive",
+    "Check": "verify.check",
+    "Derivation": "campaign.derive",
+    "Design": "records.design",
+    "Drawing": "records.profile",
+    "Joint": "records.design",
+    "Picture": "records.picture",
+    "Plan": "joints.plan",
+    "Profile": "records.profile",
+    "ProfiletoolError": "errors",
+    "Request": "records.request",
+    "Result": "pipeline",
+    "Subject": "subject.find",
+    "TubeSpec": "records.request",
+    "derive_formula": "api",
+    "design": "api",
+    "files_of": "outputs",
+    "find_subject": "api",
+    "formula_file": "campaign.formula_file",
+    "load_design": "files.design_json",
+    "plan_joints": "api",
+    "verify_design": "api",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'profiletool' has no attribute {name!r}")
+    value = getattr(import_module(f"profiletool.{_HOMES[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

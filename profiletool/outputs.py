@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from fem.export.vtu import write_pvd, write_vtu
 from profiletool.errors import Unsure
@@ -11,6 +12,7 @@ from profiletool.pipeline import Result
 from profiletool.profile.shape_csv import shape_csv
 from profiletool.records.design import Design
 from profiletool.records.fe import Verification
+from profiletool.records.options import in_flags
 from profiletool.records.units import BAR_PER_MPA, FloatArray
 from profiletool.report.candidates import draw_candidates
 from profiletool.report.dossier import dossier_of, formula_marks
@@ -46,6 +48,7 @@ def files_of(
     paper : {"a4", "letter"}
         Of the PDFs.
     """
+    result = _in_flags(result)
     design, checked = result.design, result.check
     lines = {"target": result.subject.profile.points, "formula": result.shape.facing}
     if result.plan.by != "formula":
@@ -73,6 +76,17 @@ def files_of(
             files |= mesh_files(checked.run)
     files["report.html"] = report_html(dossier_of(result, scene, files["template.svg"].decode()))
     return files
+
+
+def _in_flags(result: Result) -> Result:
+    """Name fields by flags in all that is said: the files are those of the command."""
+    design = result.design
+    return replace(
+        result,
+        design=replace(design, warnings=tuple(in_flags(text) for text in design.warnings)),
+        reasons=tuple(in_flags(text) for text in result.reasons),
+        misses=tuple(replace(miss, reason=in_flags(miss.reason)) for miss in result.misses),
+    )
 
 
 def candidates_png(unsure: Unsure) -> bytes:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -18,9 +17,10 @@ from profiletool.joints.plan import Plan
 from profiletool.joints.windows import best_seam
 from profiletool.records.design import Design, Fit, FormulaRef, Gauze, Source, Tube
 from profiletool.records.frames import Shape
+from profiletool.records.making import check_request
 from profiletool.records.profile import Profile
-from profiletool.records.request import Request, check_request
-from profiletool.subject.find import Subject, find_subject
+from profiletool.records.request import Request
+from profiletool.subject.find import Subject, digest_of, find_subject
 from profiletool.verdict.attempt import Attempt
 from profiletool.verdict.missed import Missed
 from profiletool.verdict.notes import notes_of
@@ -74,7 +74,7 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
     attempt = _attempt(request, subject, formula, say, progress)
     lower = _lower(attempt)
     if lower is not None:
-        say(f"once more below {lower.material.max_pressure_bar:.2f} bar, where FE is stable")
+        say(f"once more below {lower.tube.max_pressure_bar:.2f} bar, where FE is stable")
         second = _attempt(lower, subject, formula, say, progress)
         attempt = second if second.design.verified else attempt
     attempt = replace(attempt, request=request)
@@ -97,7 +97,7 @@ def _attempt(
     say: Callable[[str], None],
     progress: Progress | None,
 ) -> Attempt:
-    profile, material = subject.profile, request.material
+    profile, material = subject.profile, request.tube
     if request.method == "optimal":
         bench = FeBench(material) if request.verify and request.refine else None
         plan = optimal_plan(request, profile, formula, say, bench)
@@ -121,21 +121,21 @@ def _lower(attempt: Attempt) -> Request | None:
     if ended is None or request.method != "optimal" or not request.refine:
         return None
     bar = _STABLE_SHARE * ended.pressure_bar
-    return replace(request, material=replace(request.material, max_pressure_bar=bar))
+    return replace(request, tube=replace(request.tube, max_pressure_bar=bar))
 
 
 def _design(
     request: Request, subject: Subject, formula: Formula, plan: Plan, shape: Shape
 ) -> Design:
     """Gather the design; what the user should know of it comes later."""
-    material, profile, layout = request.material, subject.profile, plan.layout
+    material, profile, layout = request.tube, subject.profile, plan.layout
     response = None if plan.by == "formula" else misfit(plan.bent, profile)
     seam = best_seam(layout.joints).seam_deg
     gauze = Gauze(material.pitch_mm, material.thread_mm, material.turns, seam)
     return Design(
         source=Source(
             file=request.file.name,
-            sha256=hashlib.sha256(request.file.read_bytes()).hexdigest(),
+            sha256=digest_of(request),
             mm_per_px=subject.scale.mm_per_px if subject.picture is not None else None,
             scale_source=subject.scale.source,
             side=request.side,
@@ -175,4 +175,4 @@ def _verified(
             progress(reached_bar / design.pressure_bar)
 
     say(f"finite elements: the whole actuator to {design.pressure_bar:.2f} bar")
-    return check(design, profile, share)
+    return check(design, profile.points, share)

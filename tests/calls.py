@@ -1,14 +1,34 @@
-"""The command line as tests call it."""
+"""The command line as tests call it: by the entry point of the console script."""
 
 from __future__ import annotations
 
-from typer.testing import CliRunner, Result
+import io
+import sys
+from contextlib import redirect_stderr, redirect_stdout
+from dataclasses import dataclass
+from unittest.mock import patch
 
-from profiletool.cli.main import app
+from profiletool.cli.main import main
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a call printed, and its exit code."""
+
+    exit_code: int
+    stdout: str
+    stderr: str
 
 
 def call(*arguments: object) -> Result:
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+    out, err, code = io.StringIO(), io.StringIO(), 0
+    words = ["profiletool", *(str(argument) for argument in arguments)]
+    with redirect_stdout(out), redirect_stderr(err), patch.object(sys, "argv", words):
+        try:
+            main()
+        except SystemExit as ended:
+            code = int(ended.code or 0)
+    return Result(code, out.getvalue(), err.getvalue())
 
 
 def error_of(result: Result) -> str:

@@ -120,7 +120,7 @@ def load_base(name: str) -> Base:
     except BadFormula as error:
         raise UnreadableInput(str(error)) from error
     if campaign is None:
-        raise UsageError(f"{name} holds no campaign to start from; derive one without --from first")
+        raise UsageError(f"{name} holds no campaign to start from; derive one without `base` first")
     return Base(formula, campaign)
 
 
@@ -201,14 +201,14 @@ def _guess(plan: CampaignPlan, base: Base, axes: Sequence[FloatArray]) -> FloatA
     if not np.isfinite(guess).any():
         raise UsageError(
             f'the campaign of "{base.formula.name}" does not reach to these alphas and pressures '
-            "(over the rubber's stiffness); leave out --from"
+            "(over the rubber's stiffness); leave out `base`"
         )
     missing = ~np.isfinite(guess).all(axis=(0, 1))
     if missing.any():
         raise UsageError(
             f'the campaign of "{base.formula.name}" reaches, for this rubber, to less than '
-            f"{axes[2][missing][0]:g} bar or not to all alphas; lower --max-pressure or leave "
-            "out --from"
+            f"{axes[2][missing][0]:g} bar or not to all alphas; lower `max_pressure_bar` or leave "
+            "out `base`"
         )
     return guess
 
@@ -240,4 +240,4 @@ def _predictor(plan: CampaignPlan, terms: Terms) -> Callable[..., FloatArray]:
 
 def _too_little(error: BadFormula, failures: Sequence[tuple[float, float, str]]) -> str:
     first = f" (first: alpha {failures[0][0]:g}: {failures[0][2]})" if failures else ""
-    return f"{error}; {len(failures)} runs ended early{first}; lower --max-pressure"
+    return f"{error}; {len(failures)} runs ended early{first}; lower `max_pressure_bar`"

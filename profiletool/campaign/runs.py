@@ -11,11 +11,12 @@ import numpy as np
 from fem.actuator import Actuator, chain
 from fem.errors import FemError, NotConverged
 from fem.gauze import PAPER_GAUZE, Gauze
-from fem.loadpath import Options
+from fem.loadpath import DEFAULT_OPTIONS, Options
 from fem.material import MooneyRivlin
 from fem.measure import Sector
 from fem.meshsize import DEFAULT_MESH, PAPER_MESH, MeshSize
-from fem.solve import DEFAULT_OPTIONS, Solution, State, solve
+from fem.solution import Solution, State
+from fem.solver import solve
 from profiletool.campaign.keys import key_of, seal, unseal
 from profiletool.campaign.kind import RunKind
 from profiletool.records.units import BAR_PER_MPA

@@ -66,7 +66,7 @@ class Store(Generic[TaskT, OutcomeT]):
                 return
             reason = error.strerror or str(error)
             raise OutputError(
-                f"cannot keep runs in {self.folder}: {reason}; choose another folder with --runs"
+                f"cannot keep runs in {self.folder}: {reason}; choose another folder with `runs`"
             ) from error
 
     def sweep(self) -> None:

@@ -230,7 +230,7 @@ def _dask() -> Any:
         return importlib.import_module("distributed")
     except ModuleNotFoundError as error:
         raise UsageError(
-            "--scheduler needs dask.distributed; install profiletool[cluster]"
+            "`scheduler` needs dask.distributed; install profiletool[cluster]"
         ) from error
 
 
@@ -239,5 +239,5 @@ def _client(distributed: Any, address: str) -> Any:
         return distributed.Client(address, timeout=_CONNECT_SECONDS, set_as_default=False)
     except (OSError, ValueError) as error:
         raise UsageError(
-            f"no dask scheduler answers at {address}; start one there or leave out --scheduler"
+            f"no dask scheduler answers at {address}; start one there or leave out `scheduler`"
         ) from error

@@ -11,7 +11,8 @@ from typing import Annotated
 
 import typer
 
-from profiletool.errors import ProfiletoolError, UsageError
+from profiletool.errors import ProfiletoolError
+from profiletool.records.options import in_flags
 
 Debug = Annotated[bool, typer.Option("--debug", help="Show the full traceback of an error.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
@@ -37,7 +38,7 @@ def exit_codes(debug: bool) -> Iterator[None]:
     except ProfiletoolError as error:
         if debug:
             traceback.print_exc()
-        typer.echo(f"error: {error}", err=True)
+        typer.echo(f"error: {in_flags(str(error))}", err=True)
         raise typer.Exit(error.exit_code) from error
     except (typer.Exit, typer.Abort):
         raise
@@ -55,7 +56,7 @@ def speaker(quiet: bool) -> Callable[[str], None]:
 
 
 def _say(line: str) -> None:
-    typer.echo(line, err=True)
+    typer.echo(in_flags(line), err=True)
 
 
 def _silence(line: str) -> None:
@@ -100,45 +101,57 @@ def progress_bar(
         bar.stop()
 
 
-def numbers(option: str, text: str) -> list[float]:
+class Numbers(tuple[float, ...]):
+    """Numbers with commas between, as an option takes them."""
+
+
+def numbers(text: str) -> Numbers:
     """Read numbers with commas between.
 
     Raises
     ------
-    UsageError
+    typer.BadParameter
     """
     try:
         values = [float(part) for part in text.split(",")]
     except ValueError as error:
-        raise UsageError(f"{option} takes numbers with commas between, not {text!r}") from error
+        raise typer.BadParameter(f"expected numbers with commas between, not {text!r}") from error
     if not all(abs(value) < 1e6 for value in values):
-        raise UsageError(f"{option} takes finite numbers, not {text!r}")
+        raise typer.BadParameter(f"expected finite numbers, not {text!r}")
+    return Numbers(values)
+
+
+def two(text: str) -> Numbers:
+    """Read two numbers; as `numbers`."""
+    return _so_many(text, 2)
+
+
+def four(text: str) -> Numbers:
+    """Read four numbers; as `numbers`."""
+    return _so_many(text, 4)
+
+
+def ascending(text: str) -> Numbers:
+    """Read numbers above 0, in rising order and each once; as `numbers`."""
+    values = Numbers(sorted(set(numbers(text))))
+    if values[0] <= 0.0:
+        raise typer.BadParameter(f"expected numbers above 0, not {values[0]:g}")
     return values
 
 
-def two(option: str, text: str) -> tuple[float, float]:
-    """Read two numbers; as `numbers`."""
-    x, y = _so_many(option, text, 2)
-    return x, y
-
-
-def four(option: str, text: str) -> tuple[float, float, float, float]:
-    """Read four numbers; as `numbers`."""
-    x, y, width, height = _so_many(option, text, 4)
-    return x, y, width, height
-
-
-def degrees(option: str, text: str) -> float:
-    """Read an angle within one turn; as `numbers`."""
-    (angle,) = _so_many(option, text, 1)
+def turn(text: str) -> float | str:
+    """Read "auto", or an angle within one turn; as `numbers`."""
+    if text == "auto":
+        return text
+    (angle,) = _so_many(text, 1)
     if abs(angle) > 360.0:
-        raise UsageError(f"{option} takes at most 360 degrees, not {text}")
+        raise typer.BadParameter(f"expected at most 360 degrees, not {text}")
     return angle
 
 
-def _so_many(option: str, text: str, count: int) -> list[float]:
-    values = numbers(option, text)
+def _so_many(text: str, count: int) -> Numbers:
+    values = numbers(text)
     if len(values) != count:
         many = "one number" if count == 1 else f"{count} numbers with commas between"
-        raise UsageError(f"{option} takes {many}, not {text!r}")
+        raise typer.BadParameter(f"expected {many}, not {text!r}")
     return values

@@ -8,7 +8,15 @@ from typing import Annotated, Literal
 
 import typer
 
-from profiletool.cli.console import Debug, Quiet, exit_codes, numbers, progress_bar, speaker
+from profiletool.cli.console import (
+    Debug,
+    Numbers,
+    Quiet,
+    ascending,
+    exit_codes,
+    progress_bar,
+    speaker,
+)
 from profiletool.errors import UsageError
 
 
@@ -24,11 +32,15 @@ def derive(
         ),
     ] = "paper",
     alpha: Annotated[
-        str, typer.Option(help="Extents of the uncut sector, deg, with commas.")
-    ] = "84,108,120,132,156",
+        Numbers,
+        typer.Option(parser=ascending, metavar="DEG,...", help="Extents of the uncut sector, deg."),
+    ] = "84,108,120,132,156",  # type: ignore[assignment]
     openF: Annotated[
-        str, typer.Option("--openF", help="Axial lengths of the cut, mm, with commas.")
-    ] = "6,8,10,12,14",
+        Numbers,
+        typer.Option(
+            "--openF", parser=ascending, metavar="MM,...", help="Axial lengths of the cut, mm."
+        ),
+    ] = "6,8,10,12,14",  # type: ignore[assignment]
     max_pressure: Annotated[
         float, typer.Option(help="Highest pressure, bar; ten equal steps lead there.")
     ] = 2.0,
@@ -92,8 +104,8 @@ def derive(
             diameter_mm=diameter,
             wall_mm=wall,
             rubber=parse_rubber(rubber),
-            alpha_deg=_ascending("--alpha", alpha),
-            openF_mm=_ascending("--openF", openF),
+            alpha_deg=tuple(alpha),
+            openF_mm=tuple(openF),
             pressures_bar=tuple(round(p, 9) for p in pressures_to(max_pressure)),
             model=model,
         )
@@ -134,13 +146,6 @@ def derive(
             write.write_folder(report, files, force)
         typer.echo(derivation_text(found), nl=False)
         say(f"written: {out}" + ("" if report is None else f", {report}"))
-
-
-def _ascending(option: str, text: str) -> tuple[float, ...]:
-    values = sorted(set(numbers(option, text)))
-    if values[0] <= 0.0:
-        raise UsageError(f"{option} takes numbers above 0, not {values[0]:g}")
-    return tuple(values)
 
 
 def _cores() -> int:

@@ -47,12 +47,12 @@ def joint(
             raise UsageError(f"--alpha-center must be 0 to 360, not {alpha_center:g}")
         from profiletool import outputs
         from profiletool.files import write
-        from profiletool.records.request import Material
+        from profiletool.records.request import TubeSpec
         from profiletool.report.fe import fe_json, fe_text
         from profiletool.verify.run import DOWN, LYING, inflate, pressures_to
         from profiletool.verify.tube import joint_actuator
 
-        material = Material(outer_diameter_mm=diameter, wall_mm=wall)
+        material = TubeSpec(outer_diameter_mm=diameter, wall_mm=wall)
         with _failures(UsageError), _bar(pressure, quiet) as progress:
             actuator = joint_actuator(openF, alpha, alpha_center, material)
             run = inflate(actuator, pressures_to(pressure), LYING, DOWN, progress=progress)

@@ -7,9 +7,9 @@ from typing import Annotated, cast
 
 import typer
 
-from profiletool import __version__
 from profiletool.cli import derive, design, fe, table, template
 from profiletool.errors import UsageError
+from profiletool.records.version import VERSION
 
 app = typer.Typer(
     name="profiletool",
@@ -52,7 +52,7 @@ def _run(commands: typer.Typer) -> None:
 
 def _version(wanted: bool) -> None:
     if wanted:
-        typer.echo(f"profiletool {__version__}")
+        typer.echo(f"profiletool {VERSION}")
         raise typer.Exit
 
 

@@ -6,13 +6,22 @@ from typing import Annotated
 
 import typer
 
-from profiletool.cli.console import Debug, Extrapolate, FormulaFile, Json, exit_codes, numbers
+from profiletool.cli.console import (
+    Debug,
+    Extrapolate,
+    FormulaFile,
+    Json,
+    Numbers,
+    exit_codes,
+    numbers,
+)
 from profiletool.errors import Infeasible, UsageError
 
 
 def table(
     openF: Annotated[
-        str | None, typer.Option("--openF", help="Cuts, mm, with commas (default: 6,8,10).")
+        Numbers | None,
+        typer.Option("--openF", parser=numbers, metavar="MM,...", help="Cuts (default: 6,8,10)."),
     ] = None,
     formula: FormulaFile = None,
     extrapolate: Extrapolate = False,
@@ -28,8 +37,7 @@ def table(
         from profiletool.report.text import theta_csv, theta_json, theta_text
 
         try:
-            cuts = None if openF is None else numbers("--openF", openF)
-            made = make_table(read_formula(formula, extrapolate), openF_mm=cuts)
+            made = make_table(read_formula(formula, extrapolate), openF_mm=openF)
         except OutOfRange as error:
             raise UsageError(str(error)) from error
         if as_json and as_csv:
@@ -39,8 +47,13 @@ def table(
 
 
 def assign(
-    openF: Annotated[str, typer.Option("--openF", help="Cut of every joint, mm, with commas.")],
-    theta: Annotated[str, typer.Option("--theta", help="Angle of every joint, deg, with commas.")],
+    openF: Annotated[
+        Numbers,
+        typer.Option("--openF", parser=numbers, metavar="MM,...", help="Cut of every joint, mm."),
+    ],
+    theta: Annotated[
+        Numbers, typer.Option(parser=numbers, metavar="DEG,...", help="Angle of every joint, deg.")
+    ],
     formula: FormulaFile = None,
     extrapolate: Extrapolate = False,
     as_json: Json = False,
@@ -54,17 +67,16 @@ def assign(
         from profiletool.files.formula import read_formula
         from profiletool.report.text import assignment_json, assignment_text
 
-        cuts, angles = numbers("--openF", openF), numbers("--theta", theta)
-        if len(cuts) != len(angles):
+        if len(openF) != len(theta):
             raise UsageError(
-                f"--openF has {len(cuts)} numbers, --theta {len(angles)}: give one each per joint"
+                f"--openF has {len(openF)} numbers, --theta {len(theta)}: give one each per joint"
             )
-        if min(angles) <= 0.0:
+        if min(theta) <= 0.0:
             raise UsageError("--theta takes angles above 0; their direction does not matter here")
         try:
-            known = make_table(read_formula(formula, extrapolate), openF_mm=cuts)
-            found = look_up(known, cuts, angles)
+            known = make_table(read_formula(formula, extrapolate), openF_mm=openF)
+            found = look_up(known, openF, theta)
         except OutOfRange as error:
             raise Infeasible(str(error)) from error
-        text = assignment_json(found) if as_json else assignment_text(cuts, angles, found)
+        text = assignment_json(found) if as_json else assignment_text(openF, theta, found)
         typer.echo(text, nl=False)

@@ -8,7 +8,6 @@ from typing import Annotated, Literal
 import typer
 
 from profiletool.cli.console import Debug, Quiet, exit_codes, speaker
-from profiletool.errors import UsageError
 
 Paper = Annotated[
     Literal["a4", "letter"], typer.Option(help="Pages of the PDFs; larger pieces are tiled.")
@@ -53,10 +52,7 @@ def template(
         folder = out or Path(f"{file.stem}_template")
         write.check_free(folder, force)
         made = load_design(file)
-        try:
-            check_kerf(kerf, made.gauze.pitch_mm, made.gauze.thread_mm)
-        except ValueError as error:
-            raise UsageError(f"--kerf: {error}") from error
+        check_kerf(kerf, made.gauze.pitch_mm, made.gauze.thread_mm)
         files = outputs.template_files(made, Wish(variant, kerf, date), paper, dxf)
         files["design.json"] = to_json(made).encode()
         write.write_folder(folder, files, force)

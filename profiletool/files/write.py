@@ -32,7 +32,7 @@ def check_free(folder: Path, force: bool) -> None:
         return
     _check_ours(folder, folder, force)
     if not force:
-        raise UsageError(f"{folder} exists; replace it with --force or choose another with --out")
+        raise UsageError(f"{folder} exists; replace it with `force` or choose another with `out`")
 
 
 def write_folder(folder: Path, files: Mapping[str, bytes], force: bool) -> None:
@@ -70,9 +70,9 @@ def check_file(file: Path, force: bool) -> None:
     if not _stands(file):
         return
     if not file.is_file() or file.is_symlink():
-        raise UsageError(f"{file} exists and is no file; choose another with --out")
+        raise UsageError(f"{file} exists and is no file; choose another with `out`")
     if not force:
-        raise UsageError(f"{file} exists; replace it with --force or choose another with --out")
+        raise UsageError(f"{file} exists; replace it with `force` or choose another with `out`")
 
 
 def write_file(file: Path, data: bytes, force: bool) -> None:
@@ -122,7 +122,7 @@ def _check_ours(folder: Path, place: Path, force: bool) -> None:
     try:
         seen = folder.lstat()
         if not stat.S_ISDIR(seen.st_mode):
-            raise UsageError(f"{place} exists and is no folder; choose another with --out")
+            raise UsageError(f"{place} exists and is no folder; choose another with `out`")
         names = os.listdir(folder)  # noqa: PTH208  all at once
         stands = os.path.samestat(seen, folder.lstat())
     except FileNotFoundError:
@@ -132,8 +132,8 @@ def _check_ours(folder: Path, place: Path, force: bool) -> None:
     # What another process replaces at this moment is looked at again when it is set aside.
     if force and stands and names and not set(names) & set(_MARKS):
         raise UsageError(
-            f"{place} holds no {' or '.join(_MARKS)}, so --force will not replace it; "
-            "choose another with --out"
+            f"{place} holds no {' or '.join(_MARKS)}, so `force` will not replace it; "
+            "choose another with `out`"
         )
 
 
@@ -149,7 +149,7 @@ def _beside(place: Path) -> Iterator[Path]:
 
 def _cannot_write(place: Path, error: OSError) -> OutputError:
     reason = error.strerror or str(error)
-    return OutputError(f"cannot write {place}: {reason}; choose another place with --out")
+    return OutputError(f"cannot write {place}: {reason}; choose another place with `out`")
 
 
 def _write(path: Path, data: bytes) -> None:

@@ -18,8 +18,9 @@ from profiletool.image.sheet.parallax import (
     remaining,
     shrinkage,
 )
+from profiletool.records.making import check_scale
 from profiletool.records.picture import Picture, Scale, Silhouette
-from profiletool.records.request import ScaleRequest, check_scale
+from profiletool.records.request import ScaleRequest
 
 _AGREEMENT = 0.02  # markers, and the sides of one, differ by less or are not trusted
 _SQUARENESS = 0.1
@@ -70,8 +71,8 @@ def scale_of(picture: Picture, silhouette: Silhouette, request: ScaleRequest) ->
     if picture.mm_per_px is not None:
         return Scale(picture.mm_per_px, "resolution", _SCANNER_SHARE)
     raise NoScale(
-        "nothing says how large the object is; give --height, --width, --mm-per-px or --marker-mm, "
-        "or photograph it on a printed profiletool sheet"
+        "nothing says how large the object is; give `height_mm`, `width_mm`, `mm_per_px` or "
+        "`marker_mm`, or photograph it on a printed profiletool sheet"
     )
 
 
@@ -103,11 +104,11 @@ def _marker_scale(
     if t > LARGEST_SHARE * distance:
         raise NoScale(
             f"a camera {distance:.0f} mm away is too near for an object so thick; photograph it "
-            "from farther off, or give --height or --width"
+            "from farther off, or give `height_mm` or `width_mm`"
         )
     if not focal_px * k / _FAR_OFF < distance < focal_px * k * _FAR_OFF:
         raise UsageError(
-            f"--camera-distance is {distance:g} mm, but the marker shows a camera some "
+            f"`camera_distance_mm` is {distance:g} mm, but the marker shows a camera some "
             f"{focal_px * k:.0f} mm away; give millimetres from the lens to the marker"
         )
     left = remaining(t, Camera((0.0, 0.0), distance), 0.0, section=False)
@@ -124,18 +125,18 @@ def _marker_side_px(picture: Picture) -> tuple[float, float]:
     if not markers:
         raise NoScale(
             "no ArUco DICT_4X4_50 marker found; show it whole, sharp and with its white margin, "
-            "or give --height or --width"
+            "or give `height_mm` or `width_mm`"
         )
     sides = np.array([np.hypot(*(np.roll(quad, -1, axis=0) - quad).T) for quad in markers])
     if (np.ptp(sides, axis=1) > _SQUARENESS * sides.mean(axis=1)).any():
         raise NoScale(
             "the marker is seen at a slant; photograph it from straight above, "
-            "or give --height or --width"
+            "or give `height_mm` or `width_mm`"
         )
     means = sides.mean(axis=1)
     if np.ptp(means) > _AGREEMENT * means.mean():
         raise NoScale(
             f"the {len(means)} markers differ in size by more than 2 %; lay them level with the "
-            "object and photograph from straight above, or give --height or --width"
+            "object and photograph from straight above, or give `height_mm` or `width_mm`"
         )
     return float(means.mean()), float(sides.std() / sides.mean())

@@ -8,13 +8,13 @@ import numpy as np
 
 from formula.errors import OutOfRange
 from profiletool.bending.model import Model
-from profiletool.records.request import Material
+from profiletool.records.request import TubeSpec
 from profiletool.records.units import BAR_PER_MPA, FloatArray
 
 BASE_TURN_RAD, BASE_OFFSET_MM = float(np.radians(15.0)), 3.0
 
 
-def limits_of(model: Model, material: Material, base_free: bool = False) -> Limits:
+def limits_of(model: Model, material: TubeSpec, base_free: bool = False) -> Limits:
     """Say what the tube, the gauze and the model allow."""
     low, high = model.pressure
     return Limits(
@@ -29,7 +29,7 @@ def limits_of(model: Model, material: Material, base_free: bool = False) -> Limi
     )
 
 
-def cuts_of(model: Model, material: Material) -> FloatArray:
+def cuts_of(model: Model, material: TubeSpec) -> FloatArray:
     """Give the cuts in whole meshes that the model holds for, mm.
 
     Raises
@@ -51,7 +51,7 @@ WRAP_MM = 2.0  # least wrapped length between two windows, and at least one mesh
 END_WRAP_MM = 4.0  # least wrapped length at the closed end: the paper's mould leaves 4 mm there
 
 
-def wrap_mm(material: Material) -> float:
+def wrap_mm(material: TubeSpec) -> float:
     """Least wrapped length between two windows."""
     return max(WRAP_MM, material.pitch_mm)
 

@@ -22,7 +22,7 @@ from profiletool.joints.plan import Plan
 from profiletool.records.design import AWAY_DEG, TOWARD_DEG, Joint
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
-from profiletool.records.request import Material, Request
+from profiletool.records.request import Request, TubeSpec
 from profiletool.records.units import BAR_PER_MPA, FloatArray
 from profiletool.rubber.presets import law_of
 
@@ -48,9 +48,9 @@ def optimal_plan(
     UsageError, NoObject
     """
     model = _model(request, formula)
-    if request.material.max_pressure_bar < BAR_PER_MPA * model.pressure[0]:
+    if request.tube.max_pressure_bar < BAR_PER_MPA * model.pressure[0]:
         raise UsageError(
-            f"--max-pressure {request.material.max_pressure_bar:g} bar is less than the "
+            f"`max_pressure_bar` {request.tube.max_pressure_bar:g} bar is less than the "
             f"{BAR_PER_MPA * model.pressure[0]:g} bar from which on the joints are known by the "
             f"{_by(model)}"
         )
@@ -67,7 +67,7 @@ def optimal_plan(
     def say_fe(line: str) -> None:
         say(f"finite elements, {line}")
 
-    material, notes = request.material, list[str]()
+    material, notes = request.tube, list[str]()
     for _ in range(2):
         choice = _chosen(profile, model, material, wish)
         say(
@@ -100,7 +100,7 @@ def optimal_plan(
 
 
 def _model(request: Request, formula: Formula) -> Model:
-    material = request.material
+    material = request.tube
     if request.formula is not None:
         return FormulaModel(formula, material.radius_mm)
     law = law_of(material.rubber)
@@ -113,15 +113,15 @@ def _by(model: Model) -> str:
     return "joint response" if isinstance(model, Response) else "formula"
 
 
-def _chosen(profile: Profile, model: Model, material: Material, wish: Wish) -> Choice:
+def _chosen(profile: Profile, model: Model, material: TubeSpec, wish: Wish) -> Choice:
     try:
         return choose(profile, model, material, wish)
     except OutOfRange as error:
-        raise UsageError(f"{error}; change --pitch, --max-pressure or --formula") from error
+        raise UsageError(f"{error}; change `pitch_mm`, `max_pressure_bar` or `formula`") from error
 
 
 def _steps(request: Request) -> Steps:
-    material = request.material
+    material = request.tube
     thread = material.pitch_mm / material.radius_mm
     alpha = request.alpha_step_deg
     return Steps(

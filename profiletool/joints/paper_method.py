@@ -28,18 +28,18 @@ def paper_plan(
     ------
     UsageError, NoObject, Infeasible
     """
-    material = request.material
+    material = request.tube
     try:
         table = theta_table(formula, material)
     except OutOfRange as error:
-        raise UsageError(f"{error}; change --pitch, --max-pressure or --formula") from error
+        raise UsageError(f"{error}; change `pitch_mm`, `max_pressure_bar` or `formula`") from error
     tolerance = request.tolerance_mm or PAPER_TOLERANCE_MM
     rules = joint_rules(table, material, tolerance)
     sectors = discretise(profile, rules, request.joints)
     if not sectors:
         raise NoObject(
             f"the profile is straight to {tolerance:g} mm: there is nothing to bend; "
-            "take another --side or stretch, or a smaller --tolerance"
+            "take another `side` or stretch, or a smaller `tolerance_mm`"
         )
     try:
         layout = lay_out(profile, sectors, table, material)

@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 
 from profiletool.profile.curve import ring_stretch
-from profiletool.records.frames import Side, side_sign
+from profiletool.records.side import Side, side_sign
 from profiletool.records.units import FloatArray
 
 _TOP_SHARE = 0.02  # of the height: what counts as the top of the object

@@ -12,8 +12,8 @@ from profiletool.errors import NoObject
 from profiletool.profile.curve import Curve, arc_length, make_curve, smoothing_width
 from profiletool.profile.offset import reachable_line, reachable_outline
 from profiletool.profile.side import Stretch, side_of
-from profiletool.records.frames import Side, side_sign
 from profiletool.records.profile import Profile
+from profiletool.records.side import Side, side_sign
 from profiletool.records.units import FloatArray
 
 STEP_MM = 0.1  # spacing of a profile's points
@@ -84,7 +84,7 @@ def profile_of_line(points: FloatArray, reach: Reach) -> Profile:
     if length < _MOST_LOST * drawn:
         raise NoObject(
             f"on its {reach.side} a tube can follow only {length:.0f} of the {drawn:.0f} mm drawn; "
-            "take the other --side or a thinner tube"
+            "take the other `side` or a thinner tube"
         )
     profile = _profile(Stretch(line, 0.0, length), reach, None)
     gap = shapely.distance(shapely.points(profile.points), shapely.LineString(points))
@@ -112,8 +112,8 @@ def _profile(stretch: Stretch, reach: Reach, outline: FloatArray | None) -> Prof
     low, high = first + np.rint(shares * (last - first)).astype(int)
     if whole.s[high] - whole.s[low] < 2.0 * reach.radius_mm:
         raise NoObject(
-            f"only {whole.s[high] - whole.s[low]:.1f} mm lie between --from and --to, less than "
-            "one diameter of the tube; take a longer stretch"
+            f"only {whole.s[high] - whole.s[low]:.1f} mm lie between `start_pct` and `end_pct`, "
+            "less than one diameter of the tube; take a longer stretch"
         )
     kept = slice(int(low), int(high) + 1)
     # Level at the top is pi on the left side and 0 on the right: count from the far side of that.

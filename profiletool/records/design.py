@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from formula.theta import RubberLaw
-from profiletool.records.frames import Pose, Side
+from profiletool.records.frames import Pose
+from profiletool.records.side import Side
 
 TOWARD_DEG, AWAY_DEG = 270.0, 90.0  # alpha_center of a joint that bends toward the object, or away
 

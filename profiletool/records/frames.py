@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
@@ -14,14 +13,6 @@ def base_axes(heading: float, sign: float) -> tuple[FloatArray, FloatArray]:
     """Give unit vectors along the tube and away from the object, (2,) each."""
     cos, sin = np.cos(heading), np.sin(heading)
     return np.array([cos, sin]), sign * np.array([sin, -cos])
-
-
-Side = Literal["left", "right"]
-
-
-def side_sign(side: Side) -> float:
-    """Return +1 where a convex turn is counter-clockwise (left side), else -1."""
-    return 1.0 if side == "left" else -1.0
 
 
 @dataclass(frozen=True)

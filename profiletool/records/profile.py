@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from profiletool.records.frames import Side, side_sign
+from profiletool.records.side import Side, side_sign
 from profiletool.records.units import FloatArray
 
 
@@ -48,3 +48,19 @@ class Profile:
     def sign(self) -> float:
         """+1 where a convex turn is counter-clockwise (left side), else -1."""
         return side_sign(self.side)
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A drawn profile.
+
+    Attributes
+    ----------
+    points : (N, 2) mm, x to the right, y up
+        In the drawing's own place and order of travel, no two successive ones alike, 3 at least.
+    closed : bool
+        The last point joins the first, which is not repeated.
+    """
+
+    points: FloatArray
+    closed: bool

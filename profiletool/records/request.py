@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
-import numpy as np
+from profiletool.records.side import Side
 
-from formula.theta import RubberLaw
-from profiletool.errors import UsageError
-from profiletool.records.frames import Side
+if TYPE_CHECKING:
+    from formula.theta import RubberLaw
+    from profiletool.records.picture import Picture
+    from profiletool.records.profile import Drawing, Profile
+
 
 Box = tuple[float, float, float, float]  # x, y, width, height
 Point = tuple[float, float]  # x, y
@@ -40,29 +41,11 @@ class ScaleRequest:
     camera_distance_mm: float | None = None
 
 
-def check_scale(request: ScaleRequest) -> None:
-    """Refuse lengths that are no lengths.
-
-    Raises
-    ------
-    UsageError
-    """
-    for option, value in {
-        "--height": request.height_mm,
-        "--width": request.width_mm,
-        "--mm-per-px": request.mm_per_px,
-        "--marker-mm": request.marker_mm,
-        "--camera-distance": request.camera_distance_mm,
-    }.items():
-        if value is not None and not (math.isfinite(value) and value > 0.0):
-            raise UsageError(f"{option} is {value:g}; give a positive number of millimetres")
-
-
 INTERFERENCE_MM = 0.3  # how deep a straight piece of tube may lie in the object as drawn
 
 
 @dataclass(frozen=True)
-class Material:
+class TubeSpec:
     """The tube and gauze that a design starts from, and what they may be asked for.
 
     ``rubber`` is None for the paper's.
@@ -116,7 +99,9 @@ Method = Literal["optimal", "paper"]
 class Request:
     """What `design` was asked for.
 
-    ``tolerance_mm`` None stands for the method's own, ``alpha_step_deg`` None for one thread.
+    ``file`` is the picture or drawing to read; where one is ``given`` in its place, ``file`` is
+    only its name. ``tolerance_mm`` None stands for the method's own, ``alpha_step_deg`` None for
+    one thread.
     """
 
     file: Path
@@ -133,40 +118,9 @@ class Request:
     base_free: bool = False
     alpha_step_deg: float | None = None
     place_step_mm: float = 1.0
-    material: Material = field(default_factory=Material)
+    tube: TubeSpec = field(default_factory=TubeSpec)
     formula: Path | None = None
     extrapolate: bool = False
-    verify: bool = False
+    verify: bool = True
     refine: bool = True
-
-
-def check_request(request: Request) -> None:
-    """Refuse options that no design can be made with."""
-    check_scale(request.scale)
-    material = request.material
-    positive = {
-        "--diameter": material.outer_diameter_mm,
-        "--wall": material.wall_mm,
-        "--root": material.root_mm,
-        "--pitch": material.pitch_mm,
-        "--max-pressure": material.max_pressure_bar,
-        "--max-length": material.max_length_mm,
-        "--tolerance": 1.0 if request.tolerance_mm is None else request.tolerance_mm,
-    }
-    for option, value in positive.items():
-        if not (np.isfinite(value) and value > 0.0):
-            raise UsageError(f"{option} must be a number above 0, not {value:g}")
-    for option, value in {
-        "--clearance": request.clearance_mm,
-        "--interference": request.interference_mm,
-        "--alpha-step": request.alpha_step_deg or 0.0,
-        "--place-step": request.place_step_mm,
-    }.items():
-        if not (np.isfinite(value) and value >= 0.0):
-            raise UsageError(f"{option} must be 0 or more, not {value:g}")
-    if material.pitch_mm <= material.thread_mm:
-        raise UsageError(f"--pitch must be more than the thread, {material.thread_mm:g} mm")
-    if material.wall_mm >= material.radius_mm:
-        raise UsageError("--wall must be less than half of --diameter")
-    if not 0.0 <= request.start_pct < request.end_pct <= 100.0:
-        raise UsageError("--from and --to must be percentages with --from below --to")
+    given: Picture | Drawing | Profile | None = None

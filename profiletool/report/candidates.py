@@ -33,7 +33,7 @@ def draw_candidates(rgb: NDArray[np.uint8], candidates: Candidates) -> bytes:
     Returns
     -------
     bytes
-        PNG. The axes are numbered in the picture's pixels, for --box and --point.
+        PNG. The axes are numbered in the picture's pixels, for `box` and `point`.
     """
     shown = candidates[:_MOST]
     height, width = rgb.shape[:2]

@@ -21,8 +21,8 @@ from profiletool.report.plots import theta_figure
 from profiletool.report.stage import controls, legend, readout, stage
 from profiletool.report.steps import steps
 from profiletool.report.tables import joint_table, loads, provenance, sensitivity_table
-from profiletool.report.text import off_text
 from profiletool.report.tradeoff import trade_off_figure
+from profiletool.verdict.summary import off_text
 
 
 def report_html(dossier: Dossier) -> bytes:

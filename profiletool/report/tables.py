@@ -6,11 +6,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import pi
 
-from profiletool import __version__
 from profiletool.joints.windows import slit_rows
 from profiletool.records.design import Design, Joint, Source
 from profiletool.records.fe import FeState, Verification
 from profiletool.records.units import FloatArray
+from profiletool.records.version import VERSION
 from profiletool.report.markup import Markup, joined, pairs, signed, table, tag
 from profiletool.report.text import scale_text
 from profiletool.template.labels import short
@@ -150,7 +150,7 @@ def provenance(design: Design, found: Verification | None, options: Sequence[Opt
         ("Formula", tag("bdi", formula.name)),
         ("SHA-256 of the formula", tag("code", formula.sha256)),
         ("Mesh", _mesh(found)),
-        ("Made by", f"profiletool {__version__}"),
+        ("Made by", f"profiletool {VERSION}"),
     ]
     asked = [
         (

@@ -6,38 +6,11 @@ import json
 from collections.abc import Iterator, Sequence
 
 from formula.table import Assignment, Table
-from profiletool.records.design import Design, Misfit, Source
+from profiletool.records.design import Source
 from profiletool.verdict.notes import named
 
 EXTRAPOLATED = "beyond what the formula was fitted on: extrapolated"
 _COLUMNS = ("pressure_bar", "openF_mm", "alpha_closed_deg", "theta_deg")
-
-
-def joint_table(design: Design) -> str:
-    """Lay out the joints of a design as the paper's Table 5."""
-    extra = [("formula deg", "theta_formula_deg")]
-    if any(j.theta_response_deg is not None for j in design.joints):
-        extra.append(("response deg", "theta_response_deg"))
-    if design.verified:
-        extra.append(("FE deg", "theta_fe_deg"))
-    lines = [
-        f"{design.source.file}: {_counted(len(design.joints))} at {design.pressure_bar:.2f} bar, "
-        f"tube {design.tube.length_mm:.1f} mm long, root {design.tube.root_mm:.1f} mm",
-        "joint    F mm  openF mm  alpha_closed deg  alpha_center deg  theta deg"
-        + "".join(f"  {head}" for head, _ in extra),
-    ]
-    lines += [
-        f"{j.number:5d}  {j.F_mm:6.1f}  {j.openF_mm:8g}  {j.alpha_closed_deg:16.4g}  "
-        f"{j.alpha_center_deg:16g}  {j.theta_target_deg:9.1f}"
-        + "".join(f"  {getattr(j, name):{len(head)}.1f}" for head, name in extra)
-        for j in design.joints
-    ]
-    lines.append(f"by the formula off the profile:        {off_text(design.fit.formula)}")
-    if design.fit.response is not None:
-        lines.append(f"by the joint response off the profile: {off_text(design.fit.response)}")
-    if design.fit.fe is not None:
-        lines.append(f"by FE off the profile:                 {off_text(design.fit.fe)}")
-    return "\n".join(lines) + "\n"
 
 
 def scale_text(source: Source, digits: int = 4) -> str:
@@ -45,15 +18,6 @@ def scale_text(source: Source, digits: int = 4) -> str:
     error = source.scale_error_share
     within = "" if error is None else f", within {100.0 * error:.2g} %"
     return f"{source.mm_per_px:.{digits}g} mm per pixel{within}"
-
-
-def off_text(misfit: Misfit) -> str:
-    """Say how far a shape lies off its target."""
-    return f"{misfit.rms_mm:.2f} mm RMS, {misfit.max_mm:.2f} mm at most"
-
-
-def _counted(joints: int) -> str:
-    return "1 joint" if joints == 1 else f"{joints} joints"
 
 
 def theta_text(table: Table) -> str:

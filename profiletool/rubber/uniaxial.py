@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize_scalar
 
-from fem.material import FloatArray, MooneyRivlin, kinematics, stress, tangent, volumetric
+from fem.material import FloatArray, MooneyRivlin, kinematics
 from profiletool.errors import UnreadableInput
 from profiletool.files.columns import NUMBER, read_lines, shown
 
@@ -72,8 +72,8 @@ def uniaxial_stress(law: MooneyRivlin, stretch: ArrayLike) -> FloatArray:
     for _ in range(_STEPS):
         F[1, 1] = F[2, 2] = lateral
         k = kinematics(F)
-        p, stiffness = volumetric(law, k.J)[1:]
-        P, A = stress(law, k, p), tangent(law, k, p, stiffness)
+        p, stiffness = law.volumetric(k.J)[1:]
+        P, A = law.stress(k, p), law.tangent(k, p, stiffness)
         # dP22 of one lateral stretch: A_2222 + A_2233; a step of Newton's method, kept short.
         step = -P[1, 1] / (A[3, 1, 1] + A[4, 1, 2])
         step = np.clip(step, -_STEP * lateral, _STEP * lateral)

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from profiletool.errors import NoObject, UsageError
+from profiletool.image.load import load_picture
 from profiletool.profile.drawing.load import SUFFIXES, load_vector
 from profiletool.profile.side import top_middle
 from profiletool.profile.target import Reach, profile_of_line, profile_of_object
-from profiletool.records.frames import Side
 from profiletool.records.picture import Picture, Scale, Silhouette
-from profiletool.records.profile import Profile
+from profiletool.records.profile import Drawing, Profile
 from profiletool.records.request import Look, Request, ScaleRequest
+from profiletool.records.side import Side
 from profiletool.subject.photo import changed, see, turn_of
 
 _WRONG_SCALE = {
@@ -50,22 +52,28 @@ def find_subject(request: Request, say: Callable[[str], None]) -> Subject:
     """
     reach = Reach(
         side=request.side,
-        radius_mm=request.material.radius_mm,
+        radius_mm=request.tube.radius_mm,
         clearance_mm=request.clearance_mm,
         start_pct=request.start_pct,
         end_pct=request.end_pct,
     )
-    if request.file.suffix.lower() in SUFFIXES:
-        return _drawn_subject(request, reach, say)
-    seen = see(request.file, request.scale, request.look, say)
+    given = request.given
+    if isinstance(given, Profile):
+        return Subject(None, None, Scale(1.0, "vector"), None, given)
+    if given is None and request.file.suffix.lower() in SUFFIXES:
+        given = load_vector(request.file)
+    if isinstance(given, Drawing):
+        return _drawn_subject(request, given, reach, say)
+    picture = load_picture(request.file) if given is None else given
+    seen = see(picture, request.scale, request.look, say)
     silhouette, scale = seen.silhouette, seen.scale
     _check_frame(silhouette, scale, request.side)
     k = scale.mm_per_px
     origin = top_middle(silhouette.contour_px * [1.0, -1.0]) * [1.0, -1.0]
     outline = (silhouette.contour_px - origin) * [k, -k]
     width, height = np.ptp(outline, axis=0)
-    given = request.look.mask is not None
-    sure = "" if given else f" (sure to {100.0 * silhouette.confidence:.0f} %)"
+    by_mask = request.look.mask is not None
+    sure = "" if by_mask else f" (sure to {100.0 * silhouette.confidence:.0f} %)"
     error = scale.measured_error
     within = "" if error is None else f", within {100.0 * error:.2g} %"
     say(
@@ -78,11 +86,12 @@ def find_subject(request: Request, say: Callable[[str], None]) -> Subject:
     return Subject(seen.picture, silhouette, scale, place, profile, seen.rotated_deg, seen.notes)
 
 
-def _drawn_subject(request: Request, reach: Reach, say: Callable[[str], None]) -> Subject:
-    drawn = load_vector(request.file)
+def _drawn_subject(
+    request: Request, drawn: Drawing, reach: Reach, say: Callable[[str], None]
+) -> Subject:
     look, points = request.look, drawn.points
     if not drawn.closed and (look.rotate == "auto" or look.symmetric):
-        raise UsageError("--rotate auto and --symmetric need an object; this is an open profile")
+        raise UsageError("`rotate` auto and `symmetric` need an object; this is an open profile")
     turn = turn_of(points, look.rotate)
     make = profile_of_object if drawn.closed else profile_of_line
     profile = make(changed(points, turn, look.symmetric), reach)
@@ -90,6 +99,19 @@ def _drawn_subject(request: Request, reach: Reach, say: Callable[[str], None]) -
     x, y = profile.points[0]
     say(f"drawing: {kind}, {profile.length_mm:.1f} mm to follow from ({x:.1f}, {y:.1f}) down")
     return Subject(None, None, Scale(1.0, "vector"), None, profile, turn)
+
+
+def digest_of(request: Request) -> str:
+    """SHA-256 of what a design is made from: the file's bytes, or the values given in its place."""
+    given = request.given
+    if given is None:
+        return hashlib.sha256(request.file.read_bytes()).hexdigest()
+    arrays = (given.rgb, given.alpha) if isinstance(given, Picture) else (given.points,)
+    digest = hashlib.sha256()
+    for array in arrays:
+        if array is not None:
+            digest.update(f"{array.dtype.str}{array.shape}".encode() + array.tobytes())
+    return digest.hexdigest()
 
 
 def _check_frame(silhouette: Silhouette, scale: Scale, side: Side) -> None:
@@ -108,7 +130,7 @@ def drawing_notes(request: Request, subject: Subject) -> Iterator[str]:
         if request.scale != ScaleRequest():
             yield "a drawing is in mm already: the scale options were not used"
         if request.look != Look(rotate=request.look.rotate, symmetric=request.look.symmetric):
-            yield "a drawing needs no --box, --point or --mask: they were not used"
+            yield "a drawing needs no `box`, `point` or `mask`: they were not used"
         return
     yield from subject.notes
     if subject.silhouette.touches:

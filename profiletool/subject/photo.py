@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -12,7 +11,7 @@ import numpy as np
 from profiletool.errors import NoObject
 from profiletool.image.find.hint import Hint, check_hint
 from profiletool.image.find.silhouette import find_silhouette
-from profiletool.image.load import load_mask, load_picture
+from profiletool.image.load import load_mask
 from profiletool.image.marker import find_markers
 from profiletool.image.scale import scale_of
 from profiletool.image.sheet.rectify import Rectified, edge_warnings, rectify
@@ -57,8 +56,8 @@ class Seen:
     notes: tuple[str, ...] = field(default=())
 
 
-def see(file: Path, asked: ScaleRequest, look: Look, say: Callable[[str], None]) -> Seen:
-    """Read a picture and find the object in it, its way up and its size.
+def see(picture: Picture, asked: ScaleRequest, look: Look, say: Callable[[str], None]) -> Seen:
+    """Find the object in a picture, its way up and its size.
 
     Raises
     ------
@@ -66,7 +65,6 @@ def see(file: Path, asked: ScaleRequest, look: Look, say: Callable[[str], None])
     Unsure
         Its candidates are masks of the photograph, which it carries too.
     """
-    picture = load_picture(file)
     hint = _hint(look, picture)
     sheet = rectify(picture)
     if sheet is not None:
@@ -83,7 +81,7 @@ def see(file: Path, asked: ScaleRequest, look: Look, say: Callable[[str], None])
         silhouette, scale = measure_on_sheet(sheet, silhouette, asked)
     turn = turn_of(y_up(silhouette.contour_px), look.rotate)
     if look.rotate == "auto" and turn:
-        say(f"turned upright by {turn:.1f} deg counter-clockwise; --rotate DEG turns it otherwise")
+        say(f"turned upright by {turn:.1f} deg counter-clockwise; `rotate` DEG turns it otherwise")
     upright = _upright(silhouette, turn, frontal.middle)
     if look.symmetric:
         upright = _symmetric(upright)
@@ -132,7 +130,7 @@ def turn_of(outline: FloatArray, rotate: float | Literal["auto"]) -> float:
     if found.mismatch > LARGEST_MISMATCH:
         raise NoObject(
             f"no axis is found to turn the object upright by: it and its mirror image differ by "
-            f"{100.0 * found.mismatch:.0f} % of its area at best; say by how much, --rotate DEG"
+            f"{100.0 * found.mismatch:.0f} % of its area at best; say by how much, `rotate` DEG"
         )
     return found.turn_deg
 
@@ -168,7 +166,7 @@ def averaged(outline: FloatArray, least_step: float = 0.0) -> FloatArray:
     if not found.of_revolution:
         raise NoObject(
             f"the object's two sides differ by {100.0 * found.mismatch:.0f} % of its area, too "
-            "much for --symmetric; try --rotate auto too, or leave --symmetric away"
+            "much for `symmetric`; try `rotate` auto too, or leave `symmetric` away"
         )
     step = max(least_step, float(np.ptp(outline, axis=0).max()) / _MEAN_STEPS)
     return mirrored_mean(outline, found.axis_x_mm, step)
@@ -184,7 +182,7 @@ def _symmetric(silhouette: Silhouette) -> Silhouette:
     cut = sorted(silhouette.touches - {"bottom"})
     if cut:
         raise NoObject(
-            f"the object runs out of the frame ({', '.join(cut)}), so --symmetric has no two "
+            f"the object runs out of the frame ({', '.join(cut)}), so `symmetric` has no two "
             "sides to average"
         )
     mean = averaged(y_up(silhouette.contour_px), least_step=1.0)
@@ -200,16 +198,16 @@ def _notes(silhouette: Silhouette, scale: Scale, look: Look) -> Iterator[str]:
     elif look.mask is None and silhouette.confidence < _UNDOUBTED:
         yield (
             f"the silhouette is sure to {100.0 * silhouette.confidence:.0f} % only: look at it in "
-            "overlay.png; --box, --point or --mask say where the object is"
+            "overlay.png; `box`, `point` or `mask` say where the object is"
         )
     if silhouette.held:
         yield "a hand seems to hide part of the object: look at its outline in overlay.png"
     error = scale.measured_error
     if error is not None and error > _INEXACT:
-        surer = "from farther off" if scale.source == "sheet" else "with --camera-distance"
+        surer = "from farther off" if scale.source == "sheet" else "with `camera_distance_mm`"
         yield (
             f"the scale from the {scale.source} may be {100.0 * error:.1f} % off: it is surer "
-            f"{surer}, and --height or --width settle it"
+            f"{surer}, and `height_mm` or `width_mm` settle it"
         )
     if look.rotate == 0.0:
         yield from _lean(silhouette)
@@ -222,7 +220,7 @@ def _box_note(box: Box | None, silhouette: Silhouette) -> Iterator[str]:
     left, top, w, h = box
     off = np.abs(np.stack([x - left, x - left - w, y - top, y - top - h])).min(axis=0)
     if np.mean(off < _ALONG_PX) > _ALONG_SHARE:
-        yield "the silhouette runs along --box, which may cut the object: look at overlay.png"
+        yield "the silhouette runs along `box`, which may cut the object: look at overlay.png"
 
 
 def _lean(silhouette: Silhouette) -> Iterator[str]:
@@ -232,5 +230,5 @@ def _lean(silhouette: Silhouette) -> Iterator[str]:
         return
     if found.mismatch < _LEANING_SHARE * symmetry_of(outline).mismatch:
         yield (
-            f"the object stands {abs(found.turn_deg):.0f} deg off upright: --rotate auto turns it"
+            f"the object stands {abs(found.turn_deg):.0f} deg off upright: `rotate` auto turns it"
         )

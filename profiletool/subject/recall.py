@@ -33,7 +33,7 @@ def target_of(design: Design, file: Path) -> Target | None:
 
     A drawing counts when it is the very file that the design was made from, and lies in the
     folder of ``file`` or below: a name in a file never leads out of there. In both cases the
-    profile must be as long as the design says, for neither knows of options such as --from.
+    profile must be as long as the design says, for neither knows of options such as `start_pct`.
     """
     for name, points in (
         ("shape.csv", _tabulated(file.with_name("shape.csv"))),

@@ -39,8 +39,8 @@ def distance_note(sheet: Rectified, asked: ScaleRequest) -> Iterator[str]:
         return
     if abs(given / seen.height_mm - 1.0) > max(_DISTANT, 3.0 * seen.height_share):
         yield (
-            f"--camera-distance is {given:g} mm, which was used; the sheet shows the camera about "
-            f"{seen.height_mm:.0f} mm above it"
+            f"`camera_distance_mm` is {given:g} mm, which was used; the sheet shows the camera "
+            f"about {seen.height_mm:.0f} mm above it"
         )
 
 
@@ -64,13 +64,13 @@ def find_on_sheet(
     """
     if asked.mm_per_px is not None and unsized(asked):
         raise UsageError(
-            "the picture shows a printed sheet, which tells its scale: leave --mm-per-px away, or "
+            "the picture shows a printed sheet, which tells its scale: leave `mm_per_px` away, or "
             "crop the sheet out"
         )
     markers = find_markers(sheet.plain) if asked.marker_mm is not None else []
     if asked.marker_mm is not None and not markers and unsized(asked):
         raise NoScale(
-            "no ArUco DICT_4X4_50 marker lies in the printed sheet's field; leave --marker-mm "
+            "no ArUco DICT_4X4_50 marker lies in the printed sheet's field; leave `marker_mm` "
             "away: the sheet tells the scale"
         )
     try:
@@ -126,7 +126,7 @@ def _frontal_hint(hint: Hint, sheet: Rectified) -> Hint:
     if hint.point is not None:
         x, y = sheet.frontal_of(np.array(hint.point, float)).tolist()
         if not (0.0 <= x < size[0] and 0.0 <= y < size[1]):
-            raise UsageError("--point lies outside the printed sheet; give a point on it")
+            raise UsageError("`point` lies outside the printed sheet; give a point on it")
         point = x, y
     if hint.box is not None:
         left, top, w, h = hint.box
@@ -136,7 +136,7 @@ def _frontal_hint(hint: Hint, sheet: Rectified) -> Hint:
         there = np.clip(sheet.frontal_of(corners), 0.0, size)
         low, high = there.min(axis=0), there.max(axis=0)
         if min(high - low) < LEAST_PX:
-            raise UsageError("--box lies outside the printed sheet; the object must lie on it")
+            raise UsageError("`box` lies outside the printed sheet; the object must lie on it")
         box = (*low.tolist(), *(high - low).tolist())
     mask = None if hint.mask is None else sheet.mask_of(hint.mask)
     if mask is not None and not mask.any():

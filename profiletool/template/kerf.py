@@ -8,6 +8,7 @@ import numpy as np
 from shapely import Polygon
 from shapely.geometry.polygon import orient
 
+from profiletool.errors import UsageError
 from profiletool.records.units import FloatArray
 from profiletool.template.drawing import Line, polyline
 from profiletool.template.unroll import SAME_MM, Slit
@@ -20,11 +21,13 @@ def check_kerf(kerf_mm: float, pitch_mm: float, thread_mm: float) -> None:
 
     Raises
     ------
-    ValueError
+    UsageError
     """
     room = pitch_mm - thread_mm
     if not 0.0 <= kerf_mm < room:
-        raise ValueError(f"{kerf_mm:g} mm does not pass between hoop threads {room:g} mm apart")
+        raise UsageError(
+            f"`kerf_mm`: {kerf_mm:g} mm does not pass between hoop threads {room:g} mm apart"
+        )
 
 
 def outline_path(outline: FloatArray, kerf_mm: float) -> FloatArray:

@@ -10,6 +10,7 @@ import shapely
 from profiletool.profile.symmetry import symmetry_of
 from profiletool.records.design import Design
 from profiletool.records.frames import Shape
+from profiletool.records.options import FLAGS
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
 from profiletool.template.callouts import lettered
@@ -146,7 +147,7 @@ def _fewer_fingers(mounted: Mounted, outline: FloatArray, axis: float) -> str:
     laid = "One is" if mounted.palm.fingers == 1 else "Two opposite ones are"
     return (
         f"Three fingers cannot share a palm: {why}. {laid} laid out. Fingers that start elsewhere "
-        "(--from) may find room."
+        f"({FLAGS['start_pct']}) may find room."
     )
 
 

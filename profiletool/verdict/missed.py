@@ -14,7 +14,7 @@ from profiletool.joints.misfit import STEP_MM, feet, target_points
 from profiletool.joints.optimal.bends import tabulate
 from profiletool.joints.optimal.choose import Choice
 from profiletool.records.profile import Profile
-from profiletool.records.request import Material
+from profiletool.records.request import TubeSpec
 from profiletool.records.units import BAR_PER_MPA, FloatArray
 
 FAR_OFF = 4.0  # times the tolerance: a place that is missed
@@ -43,7 +43,7 @@ class Missed:
     reason: str
 
 
-def tightest_radius(model: Model, material: Material, pressure: float, sense: float) -> float:
+def tightest_radius(model: Model, material: TubeSpec, pressure: float, sense: float) -> float:
     """Give the least radius of an arc that joints in a row follow, mm.
 
     The circle that touches the wrapped sectors of equal joints, as close to each other as they
@@ -52,7 +52,7 @@ def tightest_radius(model: Model, material: Material, pressure: float, sense: fl
     Parameters
     ----------
     model : Model
-    material : Material
+    material : TubeSpec
     pressure : float, MPa
     sense : float
         +1 toward the object, -1 away from it.
@@ -71,7 +71,7 @@ def missed(
     profile: Profile,
     choice: Choice,
     model: Model,
-    material: Material,
+    material: TubeSpec,
     tolerance_mm: float,
     place: Callable[[float], str] | None = None,
 ) -> tuple[Missed, ...]:
@@ -97,8 +97,8 @@ def missed(
         if ends:
             why = (
                 f"the tube ends here: it may be {material.max_length_mm:g} mm long, and the "
-                f"profile is {profile.length_mm:.0f} mm; take a shorter stretch (--from, --to) "
-                "or raise --max-length"
+                f"profile is {profile.length_mm:.0f} mm; take a shorter stretch "
+                "(`start_pct`, `end_pct`) or raise `max_length_mm`"
             )
         else:
             tight = _tightest(profile, start - _NEAR_MM, end + _NEAR_MM, radii)
@@ -111,7 +111,7 @@ def reasons(
     profile: Profile,
     choice: Choice,
     model: Model,
-    material: Material,
+    material: TubeSpec,
     tolerance_mm: float,
     place: Callable[[float], str] | None = None,
 ) -> tuple[str, ...]:
@@ -120,8 +120,8 @@ def reasons(
     if choice.chain.length > material.max_length_mm + _SLACK_MM:
         found.append(
             f"the tube would be {choice.chain.length:.1f} mm long, more than "
-            f"{material.max_length_mm:g} mm; shorten the stretch (--from, --to), or raise "
-            "--max-length"
+            f"{material.max_length_mm:g} mm; shorten the stretch (`start_pct`, `end_pct`), or "
+            "raise `max_length_mm`"
         )
     if choice.misfit.rms_mm > tolerance_mm and not found:
         found.append(

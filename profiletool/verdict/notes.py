@@ -17,7 +17,7 @@ from profiletool.records.design import Design, Gauze, Joint, Misfit
 from profiletool.records.fe import FeState
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
-from profiletool.records.request import Material
+from profiletool.records.request import TubeSpec
 from profiletool.subject.find import drawing_notes
 from profiletool.verdict.attempt import Attempt
 from profiletool.verdict.missed import Missed
@@ -54,7 +54,7 @@ def warnings(
     profile: Profile,
     fit: Misfit,
     tolerance_mm: float,
-    material: Material,
+    material: TubeSpec,
     formula: Formula,
     verified: bool,
 ) -> tuple[str, ...]:
@@ -137,8 +137,8 @@ def polygon_warnings(
     off = max(sector.deviation_mm for sector in sectors)
     if count is not None and off > tolerance_mm:
         yield (
-            f"with --joints {count} the polygon is {off:.1f} mm off the profile, "
-            f"beyond --tolerance {tolerance_mm:g}"
+            f"with `joints` {count} the polygon is {off:.1f} mm off the profile, "
+            f"beyond `tolerance_mm` {tolerance_mm:g}"
         )
 
 
@@ -184,7 +184,7 @@ def _method_notes(attempt: Attempt) -> Iterator[str]:
         tolerance = request.tolerance_mm or PAPER_TOLERANCE_MM
         fit = design.fit.fe or design.fit.formula
         yield from warnings(
-            plan.layout, attempt.profile, fit, tolerance, request.material, attempt.formula,
+            plan.layout, attempt.profile, fit, tolerance, request.tube, attempt.formula,
             design.verified,
         )  # fmt: skip
         yield from polygon_warnings(plan.sectors, tolerance, request.joints)

@@ -14,7 +14,7 @@ from profiletool.joints.paper.pieces import Rules
 from profiletool.joints.paper.sectors import Sector
 from profiletool.records.design import Design
 from profiletool.records.profile import Profile
-from profiletool.records.request import Material, Request
+from profiletool.records.request import Request, TubeSpec
 from profiletool.verdict.attempt import Attempt
 from profiletool.verdict.missed import Missed, missed
 from profiletool.verdict.notes import SLACK
@@ -30,7 +30,7 @@ def reasons_of(attempt: Attempt, misses: Sequence[Missed]) -> tuple[str, ...]:
         return not_good(attempt.design, profile, request, misses)
     place = placer(request, profile)
     return shortfalls(
-        plan.sectors, plan.layout, plan.rules, request.material, attempt.formula,
+        plan.sectors, plan.layout, plan.rules, request.tube, attempt.formula,
         request.joints, place,
     )  # fmt: skip
 
@@ -39,7 +39,7 @@ def shortfalls(
     sectors: Sequence[Sector],
     layout: Layout,
     rules: Rules,
-    material: Material,
+    material: TubeSpec,
     formula: Formula,
     count: int | None,
     place: Callable[[float], str],
@@ -55,7 +55,7 @@ def shortfalls(
         reasons.append(
             f'formula "{formula.name}" holds for a tube of {formula.outer_diameter_mm:g} mm with '
             f"a wall of {formula.wall_mm:g} mm, not {tube[0]:g} and {tube[1]:g} mm; "
-            "give a formula for this tube with --formula"
+            "give a formula for this tube with `formula`"
         )
     if count is not None and len(sectors) < count:
         reasons.append(f"there is no room for {count} joints on this profile, only {len(sectors)}")
@@ -65,8 +65,8 @@ def shortfalls(
     if layout.length_mm > material.max_length_mm + SLACK:
         reasons.append(
             f"the tube would be {layout.length_mm:.1f} mm long, more than "
-            f"{material.max_length_mm:g} mm; shorten --root or the stretch (--from, --to), "
-            "or raise --max-length"
+            f"{material.max_length_mm:g} mm; shorten `root_mm` or the stretch (`start_pct`, "
+            "`end_pct`), or raise `max_length_mm`"
         )
     return tuple(reasons)
 
@@ -80,12 +80,13 @@ def _missing(sector: Sector, rules: Rules) -> Iterator[str]:
         yield (
             f"a turn of {abs(np.degrees(sector.turn_rad)):.1f} deg is more than one joint reaches "
             f"({most:.1f} deg with openF {sector.openF_mm:g} mm at the highest pressure); leave "
-            "such a corner out with --from or --to"
+            "such a corner out with `start_pct` or `end_pct`"
         )
     if sector.missing_mm > SLACK:
         yield (
             f"its cut of {sector.openF_mm:g} mm lacks {2.0 * sector.missing_mm:.1f} mm of room; "
-            "the profile turns too fast here for this tube: leave it out with --from or --to"
+            "the profile turns too fast here for this tube: leave it out with "
+            "`start_pct` or `end_pct`"
         )
 
 
@@ -94,14 +95,14 @@ def _off(sector: Sector, rules: Rules) -> Iterator[str]:
     if sector.deviation_mm > rules.tolerance_mm:
         yield (
             f"the polygon is {sector.deviation_mm:.2f} mm off the profile, more than the "
-            f"tolerance of {rules.tolerance_mm:g} mm; raise --tolerance, or leave this place out "
-            "with --from or --to"
+            f"tolerance of {rules.tolerance_mm:g} mm; raise `tolerance_mm`, or leave this place "
+            "out with `start_pct` or `end_pct`"
         )
     elif sector.inward_mm > rules.interference_mm:
         yield (
             f"the polygon runs {sector.inward_mm:.2f} mm into the object, more than "
-            f"{rules.interference_mm:g} mm; give some --clearance, or leave this place out with "
-            "--from or --to"
+            f"{rules.interference_mm:g} mm; give some `clearance_mm`, or leave this place out with "
+            "`start_pct` or `end_pct`"
         )
 
 
@@ -121,9 +122,7 @@ def misses_of(attempt: Attempt) -> tuple[Missed, ...]:
     if plan.choice is None or plan.model is None:
         return ()
     bent = replace(plan.choice, shape=attempt.best_shape)
-    return missed(
-        profile, bent, plan.model, request.material, TOLERANCE_MM, placer(request, profile)
-    )
+    return missed(profile, bent, plan.model, request.tube, TOLERANCE_MM, placer(request, profile))
 
 
 def not_good(
@@ -144,10 +143,10 @@ def not_good(
             f"there is no room for {request.joints} joints on this profile, only "
             f"{len(design.joints)}"
         )
-    longest = request.material.max_length_mm
+    longest = request.tube.max_length_mm
     if design.tube.length_mm > longest + _SLACK_MM:
         reasons.append(
             f"the tube would be {design.tube.length_mm:.1f} mm long, more than {longest:g} mm; "
-            "shorten the stretch (--from, --to), or raise --max-length"
+            "shorten the stretch (`start_pct`, `end_pct`), or raise `max_length_mm`"
         )
     return tuple(reasons)

@@ -13,12 +13,14 @@ import numpy as np
 from fem.actuator import Actuator as Tube
 from fem.errors import BadGeometry, NotConverged
 from fem.mesh import Mesh
+from fem.near import solve_near
 from fem.sensitivity import Rate, Sensitivities, flow_to, sensitivities
-from fem.solve import Solution, solve, solve_near
+from fem.solution import Solution
+from fem.solver import solve
 from profiletool.joints.correction.correct import CannotBend, Trial
 from profiletool.joints.correction.parameters import Actuator
 from profiletool.records.frames import Shape, base_axes
-from profiletool.records.request import Material
+from profiletool.records.request import TubeSpec
 from profiletool.records.units import FloatArray
 from profiletool.verify.lines import on_line, shape_of
 from profiletool.verify.run import ended, said, shortly
@@ -28,7 +30,7 @@ from profiletool.verify.tube import tube_of
 class FeBench:
     """Bends by finite elements of the whole actuator."""
 
-    def __init__(self, material: Material) -> None:
+    def __init__(self, material: TubeSpec) -> None:
         self._material = material
         self._rates: tuple[Solution, Sensitivities] | None = None  # the last ones found
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fem.errors import BadGeometry, NotConverged
-from profiletool.joints.misfit import misfit
+from profiletool.joints.misfit import misfit_to
 from profiletool.records.design import Design
 from profiletool.records.frames import Shape
-from profiletool.records.profile import Profile
+from profiletool.records.units import FloatArray
 from profiletool.verify.run import Progress, Run, run_design, said, shortly
 
 DECIMALS = 4  # of what FE puts into design.json: far above the noise of the last bits
@@ -41,8 +41,11 @@ class Check:
         return self.run.verification.last.shape if done and self.run is not None else None
 
 
-def check(design: Design, profile: Profile, progress: Progress | None = None) -> Check:
-    """Verify a design at its operating pressure; a failure leaves it unverified and says why."""
+def check(design: Design, target: FloatArray, progress: Progress | None = None) -> Check:
+    """Verify a design at its operating pressure; a failure leaves it unverified and says why.
+
+    ``target`` holds the profile's points (N, 2), mm, object frame.
+    """
     try:
         run = run_design(design, design.pressure_bar, progress)
     except NotConverged as error:
@@ -61,7 +64,7 @@ def check(design: Design, profile: Profile, progress: Progress | None = None) ->
         )
         for joint, theta, stretch in by_joint
     )
-    off = misfit(found.last.shape, profile)
+    off = misfit_to(found.last.shape, target)
     off = replace(off, rms_mm=round(off.rms_mm, DECIMALS), max_mm=round(off.max_mm, DECIMALS))
     fit = replace(design.fit, fe=off)
     return Check(replace(design, joints=joints, fit=fit, verified=True), run, None)

@@ -8,7 +8,7 @@ import numpy as np
 
 from fem.element import face_nodes, natural_nodes, shape
 from fem.mesh import Mesh
-from fem.solve import State
+from fem.solution import State
 from profiletool.bending.kinematics import STEP_MM
 from profiletool.records.frames import Pose, Shape
 from profiletool.records.units import FloatArray

@@ -8,13 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem.actuator import Actuator
+from fem.equilibrium import Critical as FemCritical
 from fem.errors import NotConverged
-from fem.loadpath import Critical as FemCritical
 from fem.mesh import Mesh
-from fem.solve import Solution, State, solve
+from fem.solution import Solution, State
+from fem.solver import solve
 from profiletool.records.design import Design
 from profiletool.records.fe import Critical, FeState, Verification
-from profiletool.records.frames import Pose, side_sign
+from profiletool.records.frames import Pose
+from profiletool.records.side import side_sign
 from profiletool.records.units import BAR_PER_MPA, FloatArray
 from profiletool.verify.lines import Placement, placed_shape
 from profiletool.verify.tube import actuator_of

@@ -10,8 +10,9 @@ from fem.errors import FemError
 from fem.sensitivity import Rate, sensitivities
 from profiletool.joints.misfit import feet, target_points
 from profiletool.records.design import Design, Sensitivity
-from profiletool.records.frames import base_axes, side_sign
+from profiletool.records.frames import base_axes
 from profiletool.records.profile import Profile
+from profiletool.records.side import side_sign
 from profiletool.records.units import BAR_PER_MPA, FloatArray
 from profiletool.verify.bench import placed_motion
 from profiletool.verify.check import DECIMALS

@@ -10,7 +10,7 @@ from profiletool.bending.model import Chain
 from profiletool.records.design import Design
 from profiletool.records.design import Gauze as DesignGauze
 from profiletool.records.design import Tube as DesignTube
-from profiletool.records.request import Material
+from profiletool.records.request import TubeSpec
 from profiletool.rubber.presets import law_of
 
 _PAPER_THREAD_MM = 0.25
@@ -37,7 +37,7 @@ def actuator_of(design: Design) -> Actuator:
     return _tube(tube.length_mm, windows, tube, gauze)
 
 
-def tube_of(chain: Chain, material: Material) -> Actuator:
+def tube_of(chain: Chain, material: TubeSpec) -> Actuator:
     """Model a chain of joints before it is a design.
 
     Raises
@@ -57,8 +57,8 @@ def tube_of(chain: Chain, material: Material) -> Actuator:
 def _tube(
     length: float,
     windows: tuple[Window, ...],
-    tube: DesignTube | Material,
-    gauze: DesignGauze | Material,
+    tube: DesignTube | TubeSpec,
+    gauze: DesignGauze | TubeSpec,
 ) -> Actuator:
     thread = THREAD_EA * (gauze.thread_mm / _PAPER_THREAD_MM) ** 2
     return Actuator(
@@ -72,7 +72,7 @@ def _tube(
 
 
 def joint_actuator(
-    openF_mm: float, alpha_deg: float, center_deg: float, material: Material
+    openF_mm: float, alpha_deg: float, center_deg: float, material: TubeSpec
 ) -> Actuator:
     """Model one joint as the paper does: Root = F1 = 30 mm."""
     return chain(

@@ -138,7 +138,7 @@ def test_a_harder_rubber_by_five_runs() -> None:
 
 def test_what_the_known_campaign_does_not_reach() -> None:
     soft = Rubber("soft", MooneyRivlin(0.0347, 0.0314, 0.5 * PAPER_RUBBER.K), "made up")
-    with pytest.raises(UsageError, match="lower --max-pressure"):
+    with pytest.raises(UsageError, match="lower `max_pressure_bar`"):
         derive(replace(PLAN, rubber=soft), Made(), base())
     with pytest.raises(UsageError, match="alphas"):
         derive(replace(PLAN, alpha_deg=(60.0, 84.0, 120.0)), Made(), base())

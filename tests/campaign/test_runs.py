@@ -18,12 +18,13 @@ import fem
 from fem.actuator import chain
 from fem.errors import FemError, NotConverged
 from fem.gauze import PAPER_GAUZE, Gauze
-from fem.loadpath import Options
+from fem.loadpath import DEFAULT_OPTIONS, Options
 from fem.material import PAPER_RUBBER, MooneyRivlin
 from fem.measure import Sector
 from fem.meshsize import DEFAULT_MESH, PAPER_MESH, MeshSize
 from fem.sections import rotation_matrix
-from fem.solve import DEFAULT_OPTIONS, Solution, solve
+from fem.solution import Solution
+from fem.solver import solve
 from profiletool.campaign import runs
 from profiletool.campaign.keys import hash_sources, seal
 from profiletool.campaign.runs import (
@@ -36,7 +37,7 @@ from profiletool.campaign.runs import (
     run,
     to_json,
 )
-from profiletool.records.request import Material
+from profiletool.records.request import TubeSpec
 from profiletool.verify.run import DOWN, LYING, inflate
 from profiletool.verify.tube import joint_actuator
 
@@ -52,7 +53,7 @@ def coarsely(monkeypatch: pytest.MonkeyPatch, gauze: Gauze | None = None) -> Non
 
 
 def test_the_joint_is_the_one_of_profiletool_joint() -> None:
-    assert actuator_of(TASK) == joint_actuator(10.0, 84.0, 270.0, Material())
+    assert actuator_of(TASK) == joint_actuator(10.0, 84.0, 270.0, TubeSpec())
 
 
 def test_all_lengths_go_with_the_diameter() -> None:
@@ -149,6 +150,11 @@ def test_every_source_file_counts_however_its_lines_end(tmp_path: Path) -> None:
     (copy / "notes.txt").write_text("not a source file")
     file = copy / "newton.py"
     file.write_bytes(file.read_bytes().replace(b"\n", b"\r\n"))
+    assert hash_sources(copy) == known
+    law = copy / "material" / "ogden.py"  # in a subpackage
+    law.rename(law.with_name("ogden2.py"))
+    assert hash_sources(copy) != known
+    law.with_name("ogden2.py").rename(law)
     assert hash_sources(copy) == known
     file.rename(copy / "newton2.py")
     assert hash_sources(copy) != known

@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fem.solve import solve
+from fem.solver import solve
 from formula.files import campaign_of, load_formula, read_bytes
 from formula.theta import theta_deg
-from profiletool.records.request import Material
+from profiletool.records.request import TubeSpec
 from profiletool.verify.tube import joint_actuator
 from tests.calls import call, error_of
 
@@ -42,7 +42,7 @@ def test_a_formula_of_finite_elements(made: Path) -> None:
     tree = json.loads((made / "mine.json").read_text())
     assert tree["name"] == "mine"
     assert tree["campaign"]["runs"] == 6
-    run = solve(joint_actuator(12.0, 120.0, 270.0, Material()), [0.04], threads=1)
+    run = solve(joint_actuator(12.0, 120.0, 270.0, TubeSpec()), [0.04], threads=1)
     known = tree["campaign"]["theta_deg"][1][1][-1]
     assert known == pytest.approx(np.degrees(run.states[-1].theta[0]), rel=1e-6)
     assert tree["fit"]["rms_deg"] < 0.05
@@ -158,7 +158,7 @@ def test_an_earlier_file_is_kept() -> None:
 def test_the_formula_that_comes_along_is_that_of_our_finite_elements() -> None:
     """Made anew with `derive --out formula/coefficients/fe.json` where the engine changes."""
     fe = load_formula(Path("fe"))
-    run = solve(joint_actuator(10.0, 108.0, 270.0, Material()), [0.1, 0.2], threads=1)
+    run = solve(joint_actuator(10.0, 108.0, 270.0, TubeSpec()), [0.1, 0.2], threads=1)
     theta = np.degrees([state.theta[0] for state in run.states[1:]])
     np.testing.assert_allclose(theta_deg(fe, 108.0, 10.0, [1.0, 2.0]), theta, atol=0.25)
     campaign = campaign_of(read_bytes("fe"), "fe")

@@ -152,7 +152,7 @@ def test_exit_2_for_bad_usage(options: tuple[str, ...], tmp_path: Path) -> None:
     file = picture(tmp_path / "oval.png")
     scale = () if options[0] in ("--height", "--width", "--mm-per-px") else ("--height", "90")
     result = unverified(file, *scale, *options)
-    assert result.exit_code == 2, result.output
+    assert result.exit_code == 2, result.stderr
     assert [path.name for path in tmp_path.iterdir()] == ["oval.png"]
 
 
@@ -473,12 +473,12 @@ JOINT = ("joint", "--openF", "10", "--alpha", "84", "--pressure", "0.2")
 
 def ending_early(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let every FE run meet a limit point half-way."""
-    import fem.solve
+    import fem
 
-    def stopped(*arguments: object, **options: object) -> fem.solve.Solution:
-        found = fem.solve.solve(*arguments, **options)
+    def stopped(*arguments: object, **options: object) -> fem.Solution:
+        found = fem.solve(*arguments, **options)
         middle = len(found.states) // 2
-        ended = fem.solve.Critical("limit point", found.states[middle].pressure)
+        ended = fem.Critical("limit point", found.states[middle].pressure)
         return replace(found, states=found.states[:middle], critical=ended)
 
     monkeypatch.setattr("profiletool.verify.run.solve", stopped)

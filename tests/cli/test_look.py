@@ -45,14 +45,14 @@ def test_doubt_leaves_the_candidates_picture_and_no_folder(shared: Path, tmp_pat
 @pytest.mark.parametrize(
     ("option", "value", "words"),
     [
-        ("--rotate", "sideways", "--rotate takes numbers"),
-        ("--rotate", "10,20", "--rotate takes one number"),
+        ("--rotate", "sideways", "'--rotate': expected numbers"),
+        ("--rotate", "10,20", "'--rotate': expected one number"),
         ("--rotate", "361", "at most 360"),
-        ("--box", "10,10,50", "--box takes 4 numbers"),
+        ("--box", "10,10,50", "'--box': expected 4 numbers"),
         ("--box", "10,10,500,500", "--box 10,10,500,500 does not fit"),
-        ("--point", "nan,1", "--point takes finite numbers"),
+        ("--point", "nan,1", "'--point': expected finite numbers"),
         ("--point", "300,10", "outside the picture"),
-        ("--camera-distance", "-5", "--camera-distance is -5"),
+        ("--camera-distance", "-5", "--camera-distance must be a number above 0, not -5"),
     ],
 )
 def test_hints_that_make_no_sense(tmp_path: Path, option: str, value: str, words: str) -> None:
@@ -65,7 +65,7 @@ def test_hints_that_make_no_sense(tmp_path: Path, option: str, value: str, words
 def test_lengths_are_judged_where_they_are_not_needed_too(tmp_path: Path) -> None:
     result = unverified(csv(tmp_path / "a.csv", PEAR), "--camera-distance", "-5")
     assert result.exit_code == 2
-    assert "--camera-distance is -5" in error_of(result)
+    assert "--camera-distance must be a number above 0, not -5" in error_of(result)
 
 
 def test_a_mask_of_another_size_is_refused(tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ from scipy.sparse.linalg import splu
 
 from fem import solid
 from fem.element import Kind, Reference, face_nodes, gauss, natural_nodes, reference, shape
-from fem.material import PAIRS, MooneyRivlin
+from fem.material import PAIRS, Law
 from fem.pressure import face_volumes
 
 FloatArray = NDArray[np.float64]
@@ -81,7 +81,7 @@ class Model:
     def __init__(
         self,
         mesh: Grid,
-        rubber: MooneyRivlin,
+        rubber: Law,
         orders: tuple[int, int, int] = TUBE_ORDERS,
         *,
         mean_dilatation: bool = False,

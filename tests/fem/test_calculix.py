@@ -14,7 +14,8 @@ from fem.gauze import Gauze
 from fem.measure import joint_angles, lines, sectors
 from fem.mesh import Mesh, make_mesh
 from fem.meshsize import MeshSize
-from fem.solve import Solution, solve
+from fem.solution import Solution
+from fem.solver import solve
 from tests.fem import calculix
 
 PRESSURES = [0.02 * k for k in range(1, 7)]  # MPa; it gets to 1.4 bar, and there loses itself
@@ -50,7 +51,7 @@ def theirs(mesh: Mesh, tmp_path_factory: pytest.TempPathFactory) -> calculix.Run
 
 
 def angle(mesh: Mesh, x: np.ndarray) -> float:
-    """Of the joint, deg, as `fem.solve.State` gives it."""
+    """Of the joint, deg, as `fem.State` gives it."""
     return float(np.degrees(joint_angles(mesh, x, sectors(mesh, lines(mesh, x)))[0]))
 
 
@@ -79,7 +80,7 @@ def test_one_and_the_same_discrete_problem(
     monkeypatch: pytest.MonkeyPatch,
     record_property: Callable[..., None],
 ) -> None:
-    monkeypatch.setattr("fem.solve.make_mesh", lambda *_: mesh)
+    monkeypatch.setattr("fem.solver.make_mesh", lambda *_: mesh)
     ours = solve(mesh.actuator, sorted(theirs.x), SIZE, threads=1)
     found = compare("the same bricks and links", mesh, theirs, ours, record_property)
     for a, b in found.values():

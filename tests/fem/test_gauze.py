@@ -25,7 +25,7 @@ LAWS = [STRICT, Gauze(), Gauze(slack=1.0), Gauze(slack=0.3, transition=0.1)]
 
 
 def at(law: Gauze, *lam: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-    return gauze.law(law, np.array(lam))
+    return gauze.tension_law(law, np.array(lam))
 
 
 def test_compressed_threads_carry_nothing() -> None:
@@ -54,8 +54,8 @@ def test_force_and_tangent_are_derivatives(law: Gauze) -> None:
     d = law.transition
     lam = 1.0 + d * np.array([-50.0, -0.7, 0.0, 0.3, 0.9, 1.0, 1.4, 60.0])
     h = 1e-3 * d
-    (E1, f1, _), (E0, f0, _) = gauze.law(law, lam + h), gauze.law(law, lam - h)
-    _, force, tangent = gauze.law(law, lam)
+    (E1, f1, _), (E0, f0, _) = gauze.tension_law(law, lam + h), gauze.tension_law(law, lam - h)
+    _, force, tangent = gauze.tension_law(law, lam)
     np.testing.assert_allclose((E1 - E0) / (2 * h), force, atol=1e-6 * d)
     np.testing.assert_allclose((f1 - f0) / (2 * h), tangent, atol=3e-4)  # kinks: h / 4 d
 

@@ -2,25 +2,32 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 
 from fem.actuator import Actuator, chain
+from fem.assembly import System
+from fem.equilibrium import lagrange
 from fem.errors import NotConverged
 from fem.gauze import Gauze
-from fem.loadpath import Options, lagrange
-from fem.material import MooneyRivlin
+from fem.items import Batch
+from fem.loadpath import Options
+from fem.material import NeoHooke
+from fem.mesh import Mesh
 from fem.meshsize import MeshSize
-from fem.solve import solve
+from fem.solver import solve
 
 COARSE = MeshSize(around=3, beside=0.0, edge=2.0, growth=2.0)
 SHORT = chain(8.0, [14.0], [6.0], [np.radians(100.0)])
+SPOILT = 1.06  # times the volume at rest: between 0.04 and 0.06 MPa
 SOFT = Gauze(stiffness=1e-3)  # hardly any: the tube balloons
 
 
 def balloon() -> Actuator:
     """A neo-Hookean tube that the gauze does not hold."""
-    rubber = MooneyRivlin.from_poisson(0.1, 0.0, 0.46)
+    rubber = NeoHooke.from_poisson(0.1, 0.46)
     return Actuator(40.0, (), rubber=rubber, gauze=SOFT)
 
 
@@ -72,6 +79,68 @@ def test_not_converged_carries_its_history() -> None:
     assert caught.value.history
     assert caught.value.reached < 0.05
     assert all(attempt.outcome != "converged" for attempt in caught.value.history[-1:])
+
+
+def passed_on(error: NotConverged) -> NotConverged:
+    """The error as another process gets it."""
+    copy = pickle.loads(pickle.dumps(error))
+    assert isinstance(copy, NotConverged)
+    return copy
+
+
+def stuck() -> NotConverged:
+    """A path that reaches two asked pressures of three: the rubber is lost at the third."""
+    with pytest.raises(NotConverged) as caught:
+        solve(SHORT, [0.02, 0.04, 0.06], COARSE, extra=[Spoilt])
+    return caught.value
+
+
+class Spoilt:
+    """An item that turns every brick inside out once the air inside has grown by 6 %."""
+
+    def __init__(self, mesh: Mesh) -> None:
+        self._rest = float(System(mesh, 1).forces(mesh.X).volume)
+        self._mesh = mesh
+
+    def add(self, batch: Batch) -> None:
+        x = batch.x.reshape(self._mesh.X.shape)
+        if System(self._mesh, 1).forces(x).volume > SPOILT * self._rest:
+            batch.sums.least_J = -1.0
+
+
+def test_not_converged_carries_the_states_that_were_reached() -> None:
+    error = stuck()
+    assert error.solution is not None
+    states = error.solution.states
+    assert [state.pressure for state in states] == [0.0, 0.02, 0.04]
+    assert error.reached >= 0.04
+    assert not error.solution.converged
+    assert error.solution.critical is None
+    assert error.solution.failure == str(error)
+    assert error.solution.history == error.history
+    # They are the states that a run to there gives.
+    run = solve(SHORT, [0.02, 0.04], COARSE)
+    for state, other in zip(states, run.states, strict=True):
+        np.testing.assert_allclose(state.x, other.x, atol=1e-4)
+        assert state.energy_error <= 1e-3
+
+
+def test_not_converged_at_once_carries_the_state_at_rest() -> None:
+    with pytest.raises(NotConverged) as caught:
+        solve(SHORT, [0.05], COARSE, Options(tolerance=1e-18))
+    assert caught.value.solution is not None
+    assert [state.pressure for state in caught.value.solution.states] == [0.0]
+
+
+def test_not_converged_goes_from_process_to_process() -> None:
+    error = stuck()
+    copy = passed_on(error)
+    assert str(copy) == str(error)
+    assert (copy.history, copy.reached) == (error.history, error.reached)
+    assert copy.solution is not None
+    assert error.solution is not None
+    np.testing.assert_array_equal(copy.solution.states[-1].x, error.solution.states[-1].x)
+    assert passed_on(NotConverged("far", (), 0.1)).solution is None
 
 
 def test_weights_reproduce_a_polynomial() -> None:

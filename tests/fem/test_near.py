@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -10,8 +11,10 @@ import pytest
 from fem.actuator import Actuator, Window, chain
 from fem.errors import NotConverged
 from fem.mesh import alike, make_mesh
+from fem.near import between, solve_near
 from fem.sensitivity import flow_to, sensitivities
-from fem.solve import Solution, between, solve, solve_near
+from fem.solution import Solution
+from fem.solver import solve
 from fem.transfer import transfer
 
 PRESSURE = 0.12
@@ -92,7 +95,31 @@ def test_an_expected_motion_of_another_mesh_is_left(known: Solution) -> None:
 def test_no_state_there_is_said_so(known: Solution) -> None:
     with pytest.raises(NotConverged) as failure:
         solve_near(ACTUATOR, known, 5.0)
-    assert failure.value.history
+    error = failure.value
+    assert error.history
+    # Not a step of the way was made: there is the state at rest alone.
+    assert error.solution is not None
+    assert [state.pressure for state in error.solution.states] == [0.0]
+    assert not error.solution.converged
+    copy = pickle.loads(pickle.dumps(error))
+    assert (str(copy), copy.history) == (str(error), error.history)
+
+
+def test_the_last_state_on_the_way_is_carried(known: Solution) -> None:
+    # A cut of 53 mm balloons at this pressure, one of half of that does not.
+    first, *others = ACTUATOR.windows
+    longer = replace(first, centre=first.centre + 22.5, openF=first.openF + 45.0)
+    moved = [replace(w, centre=w.centre + 45.0) for w in others]
+    actuator = replace(ACTUATOR, length=ACTUATOR.length + 45.0, windows=(longer, *moved))
+    with pytest.raises(NotConverged) as failure:
+        solve_near(actuator, known, PRESSURE)
+    solution = failure.value.solution
+    assert solution is not None
+    assert failure.value.reached == 0.0  # no state of the asked actuator
+    assert [state.pressure for state in solution.states] == [0.0, PRESSURE]
+    assert solution.states[-1].residual <= 1e-6
+    assert 20.0 < solution.mesh.actuator.windows[0].openF < 53.0
+    assert solution.history[-1].outcome != "converged"
 
 
 def test_transfer_keeps_strains_where_a_sector_grows(known: Solution) -> None:

@@ -14,7 +14,7 @@ from fem.loadpath import Options, Path
 from fem.material import MooneyRivlin
 from fem.newton import correct, descend, relative_residual
 from fem.sections import Chart
-from fem.solve import solve
+from fem.solver import solve
 from tests.fem.tubes import COARSE, bent, mesh_of, tube
 
 PRESSURE = 0.08
@@ -96,10 +96,10 @@ def test_a_state_that_jumps_is_not_taken_for_the_path(monkeypatch: pytest.Monkey
     path = Path(system, chart, Options())
     states = list(path.follow([0.02, 0.04]))
     assert path._settle(0.0401, asked=True) is not None
-    last = path._known[-1]
+    last = path._states[-1]
     # As if the last state held more energy than the one that it settles into can have left.
     lifted = replace(last.forces, energy=1.01 * last.forces.energy)
-    monkeypatch.setattr(path, "_known", [*states, replace(last, forces=lifted)])
+    monkeypatch.setattr(path, "_states", [*states, replace(last, forces=lifted)])
     assert path._settle(0.0402, asked=True) is None
     assert path.history[-1].outcome == "unstable"
 

@@ -14,8 +14,11 @@ from numpy.typing import NDArray
 from fem.actuator import Actuator, chain
 from fem.gauze import PAPER_GAUZE, Gauze
 from fem.loadpath import Options
+from fem.material import Law, MooneyRivlin, Ogden
 from fem.meshsize import DEFAULT_MESH, PAPER_MESH, MeshSize
-from fem.solve import Solution, solve
+from fem.solution import Solution
+from fem.solver import solve
+from tests.fem.laws import EVERY_LAW
 
 FloatArray = NDArray[np.float64]
 Campaign = dict[tuple[float, float], list[tuple[float, float]]]
@@ -153,6 +156,27 @@ def test_mesh_error_of_the_default() -> None:
         for size in (DEFAULT_MESH, fine)
     )
     np.testing.assert_allclose(coarse, better, rtol=0.02)
+
+
+@pytest.mark.parametrize("rubber", EVERY_LAW)
+def test_a_joint_of_any_law_is_inflated(rubber: Law) -> None:
+    actuator = chain(30.0, [30.0], [10.0], [np.radians(84.0)], rubber=rubber)
+    run = solve(actuator, [0.05, 0.1])
+    check(run)
+    small, large = angles(run)[:, 0]
+    assert 0.0 < 2.0 * small < large  # the angle rises faster than the pressure
+
+
+def test_laws_that_are_one_bend_alike() -> None:
+    law = MooneyRivlin(0.0694, 0.0628, 3.2)
+    ogden = Ogden((2.0 * law.C10, -2.0 * law.C01), (2.0, -2.0), law.K)
+    size = replace(DEFAULT_MESH, edge=1.0)
+    a, b = (
+        solve(replace(joint(84.0, 10.0), rubber=rubber), [0.1], size).states[-1]
+        for rubber in (law, ogden)
+    )
+    np.testing.assert_allclose(a.theta, b.theta, rtol=1e-6)
+    np.testing.assert_allclose(a.x, b.x, atol=1e-5)
 
 
 def test_half_and_whole_agree() -> None:

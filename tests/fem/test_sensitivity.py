@@ -11,8 +11,11 @@ import pytest
 from fem.actuator import Actuator, Window, chain
 from fem.errors import FemError
 from fem.meshsize import MeshSize
+from fem.near import solve_near
 from fem.sensitivity import Rate, Sensitivities, sensitivities
-from fem.solve import State, solve, solve_near
+from fem.solution import State
+from fem.solver import solve
+from tests.fem.laws import RUBBERS
 
 # Even bricks: the mesh itself must not follow the sectors, or it would change with alpha.
 SIZE = MeshSize(around=4, beside=0.0, edge=1.0, growth=2.0)
@@ -41,12 +44,20 @@ def lengthened(actuator: Actuator, segment: int, by: float) -> Actuator:
         replace(w, centre=0.5 * (edges[2 * k + 1] + edges[2 * k + 2]), openF=lengths[2 * k + 1])
         for k, w in enumerate(actuator.windows)
     )
-    return Actuator(float(edges[-1]), windows)
+    return replace(actuator, length=float(edges[-1]), windows=windows)
 
 
-@pytest.mark.parametrize("center", [(270.0, 90.0), (250.0, 30.0)])
-def test_against_differences(center: tuple[float, float]) -> None:
-    actuator = two(center)
+@pytest.mark.parametrize(
+    ("center", "rubber"),
+    [
+        ((270.0, 90.0), "mooney-rivlin"),
+        ((250.0, 30.0), "mooney-rivlin"),
+        ((270.0, 90.0), "yeoh"),
+        ((270.0, 90.0), "ogden"),
+    ],
+)
+def test_against_differences(center: tuple[float, float], rubber: str) -> None:
+    actuator = replace(two(center), rubber=RUBBERS[rubber])
     run = solve(actuator, [PRESSURE], SIZE)
     found = sensitivities(run.mesh, run.states[-1].x, PRESSURE)
 

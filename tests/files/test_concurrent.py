@@ -91,7 +91,7 @@ def leftovers(folder: Path) -> list[str]:
 def test_without_force_the_first_stays_and_the_others_are_refused(tmp_path: Path) -> None:
     said = race([Writer(tmp_path / "out", whose, 1, force=False) for whose in range(4)])
     assert sorted(line[:2] for line in said) == ["", "2 ", "2 ", "2 "]
-    assert all("exists; replace it with --force" in line for line in said if line)
+    assert all("exists; replace it with `force`" in line for line in said if line)
     assert whole(tmp_path / "out").startswith(str(said.index("")).encode())
     assert leftovers(tmp_path) == []
 
@@ -418,6 +418,6 @@ def test_two_designs_into_one_folder(samples: Path, tmp_path: Path) -> None:
     ]  # fmt: skip
     said = [run.communicate(timeout=300)[1] for run in runs]
     assert sorted(run.returncode for run in runs) == [0, 2]
-    assert any("exists; replace it with --force" in line for line in said)
+    assert any("exists; replace it with `force`" in line for line in said)
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
     assert (tmp_path / "out" / "report.html").stat().st_size > 1000

@@ -22,7 +22,7 @@ def test_a_new_folder_holds_exactly_the_files(tmp_path: Path) -> None:
 
 def test_an_existing_folder_is_refused_and_left_alone(tmp_path: Path) -> None:
     write_folder(tmp_path / "out", FILES, force=False)
-    with pytest.raises(UsageError, match="--force"):
+    with pytest.raises(UsageError, match="`force`"):
         write_folder(tmp_path / "out", {"design.json": b"other"}, force=False)
     assert content(tmp_path / "out") == FILES
 

@@ -53,22 +53,22 @@ def test_first_given_wins(request_: ScaleRequest, value: float, source: str) -> 
 
 
 def test_nothing_given_names_the_options() -> None:
-    with pytest.raises(NoScale, match="--height, --width, --mm-per-px or --marker-mm"):
+    with pytest.raises(NoScale, match="`height_mm`, `width_mm`, `mm_per_px` or `marker_mm`"):
         scale_of(PLAIN, SILHOUETTE, ScaleRequest())
 
 
 @pytest.mark.parametrize("value", [0.0, -1.0, float("nan"), float("inf")])
 @pytest.mark.parametrize(
-    ("field", "option"),
+    "field",
     [
-        ("height_mm", "--height "),
-        ("width_mm", "--width "),
-        ("mm_per_px", "--mm-per-px "),
-        ("marker_mm", "--marker-mm "),
+        "height_mm",
+        "width_mm",
+        "mm_per_px",
+        "marker_mm",
     ],
 )
-def test_nonsense_is_bad_usage(field: str, option: str, value: float) -> None:
-    with pytest.raises(UsageError, match=option):
+def test_nonsense_is_bad_usage(field: str, value: float) -> None:
+    with pytest.raises(UsageError, match=f"`{field}` must be"):
         scale_of(PLAIN, SILHOUETTE, ScaleRequest(**{field: value}))
 
 

@@ -22,7 +22,7 @@ from profiletool.pipeline import Request, Result, run
 from profiletool.records.design import Design, Fit, Misfit
 from profiletool.records.frames import Pose, Shape
 from profiletool.records.profile import Profile
-from profiletool.records.request import Material
+from profiletool.records.request import TubeSpec
 from profiletool.subject.find import Subject, find_subject
 from profiletool.verdict.missed import Missed
 from profiletool.verdict.reasons import GOOD_SHARE, not_good
@@ -34,7 +34,7 @@ def silent(line: str) -> None:
 
 @pytest.fixture(scope="module")
 def request_(samples: Path) -> Request:
-    return Request(samples / "finger_rest.csv")
+    return Request(samples / "finger_rest.csv", verify=False)
 
 
 @pytest.fixture(scope="module")
@@ -129,7 +129,7 @@ def test_by_a_formula_of_the_users(samples: Path, tmp_path: Path) -> None:
 
     file = next((Path(formula.__file__).parent / "coefficients").glob("*.json"))
     (tmp_path / "mine.json").write_bytes(file.read_bytes())
-    request = Request(samples / "finger_rest.csv", formula=tmp_path / "mine.json")
+    request = Request(samples / "finger_rest.csv", formula=tmp_path / "mine.json", verify=False)
     found = run(request, silent)
     assert found.plan.by == "formula"
     assert found.design.fit.response is None
@@ -138,8 +138,8 @@ def test_by_a_formula_of_the_users(samples: Path, tmp_path: Path) -> None:
 
 
 def test_less_pressure_than_joints_are_known_for(request_: Request) -> None:
-    weak = replace(request_, material=Material(max_pressure_bar=0.05))
-    with pytest.raises(UsageError, match=r"--max-pressure 0\.05 bar is less than the 0\.2 bar"):
+    weak = replace(request_, tube=TubeSpec(max_pressure_bar=0.05))
+    with pytest.raises(UsageError, match=r"`max_pressure_bar` 0\.05 bar is less than the 0\.2 bar"):
         run(weak, silent)
 
 

@@ -84,7 +84,7 @@ def test_a_level_line_runs_as_drawn() -> None:
 
 
 def test_too_short_a_stretch_and_too_large_an_object() -> None:
-    with pytest.raises(NoObject, match="between --from and --to"):
+    with pytest.raises(NoObject, match="between `start_pct` and `end_pct`"):
         profile_of_object(CIRCLE, Reach("left", 10.0, start_pct=50.0, end_pct=60.0))
     with pytest.raises(NoObject, match="check the scale"):
         profile_of_object(CIRCLE * 1e6, Reach("left", 10.0))

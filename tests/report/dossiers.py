@@ -12,7 +12,7 @@ from profiletool.bending.kinematics import Bend, deform
 from profiletool.pipeline import Request, Result, run
 from profiletool.records.design import Design, Misfit, Sensitivity
 from profiletool.records.fe import Critical, FeState, Verification
-from profiletool.records.frames import side_sign
+from profiletool.records.side import side_sign
 from profiletool.report.dossier import Dossier, dossier_of
 from profiletool.report.scene import scene_of
 from profiletool.template.layout import build_sheet
@@ -22,7 +22,7 @@ from profiletool.verify.run import Run
 
 
 def designed(file: Path, **asked: Any) -> Result:
-    return run(Request(file, method="paper", **asked), lambda line: None)
+    return run(Request(file, method="paper", **({"verify": False} | asked)), lambda line: None)
 
 
 def unverified(result: Result) -> Dossier:

@@ -24,7 +24,7 @@ BLOCK_PX = 7
 
 
 def scene_from(file: Path) -> Scene:
-    return scene_of(run(Request(file, method="paper"), lambda line: None))
+    return scene_of(run(Request(file, method="paper", verify=False), lambda line: None))
 
 
 def reduced(png: bytes | Path) -> Image.Image:
@@ -103,7 +103,8 @@ def test_bulb_by_the_joint_response(bulb: Scene) -> None:
 
 
 def test_an_optimal_design_is_drawn_as_the_response_bends_it(samples: Path) -> None:
-    result = run(Request(samples / "finger_rest.csv", method="optimal"), lambda line: None)
+    request = Request(samples / "finger_rest.csv", verify=False)
+    result = run(request, lambda line: None)
     scene = scene_of(result)
     assert scene.by == "joint response"
     assert scene.fe is None

@@ -12,7 +12,7 @@ from profiletool.joints.paper.sectors import Sector
 from profiletool.profile.target import Reach, profile_of_object
 from profiletool.records.design import Joint, Misfit
 from profiletool.records.frames import Pose, Shape
-from profiletool.records.request import Material
+from profiletool.records.request import TubeSpec
 from profiletool.verdict.notes import (
     disagreement,
     named,
@@ -23,7 +23,7 @@ from profiletool.verdict.notes import (
 from profiletool.verdict.reasons import shortfalls
 
 PAPER = load_formula()
-MATERIAL = Material()
+MATERIAL = TubeSpec()
 RULES = joint_rules(theta_table(PAPER, MATERIAL), MATERIAL, 1.0)
 GOOD = Sector(0.0, 12.4, 20.0, (0.0, 0.0), np.radians(30.0), 8.0, 0.8, 0.1, 0.0, 0.0, False)
 JOINT = Joint(1, 20.0, 8.0, 132.0, 270.0, 30.0, 30.6, None, 10.0)
@@ -72,8 +72,8 @@ def test_a_number_that_was_asked_for_may_leave_the_tolerance() -> None:
 
 
 def test_tube_and_length() -> None:
-    assert "--formula" in reasons(material=replace(MATERIAL, outer_diameter_mm=16.0))[0]
-    assert "--formula" in reasons(material=replace(MATERIAL, wall_mm=1.5))[0]
+    assert "`formula`" in reasons(material=replace(MATERIAL, outer_diameter_mm=16.0))[0]
+    assert "`formula`" in reasons(material=replace(MATERIAL, wall_mm=1.5))[0]
     assert "250 mm" in reasons(layout=replace(LAYOUT, length_mm=250.2))[0]
     assert reasons(layout=replace(LAYOUT, length_mm=250.0)) == ()
 
@@ -114,7 +114,7 @@ def test_what_is_wrong_with_the_shape() -> None:
 def test_what_is_wrong_with_the_polygon() -> None:
     off = replace(GOOD, deviation_mm=2.5)
     (asked,) = polygon_warnings([GOOD, off], 1.0, 2)
-    assert asked == "with --joints 2 the polygon is 2.5 mm off the profile, beyond --tolerance 1"
+    assert asked == "with `joints` 2 the polygon is 2.5 mm off the profile, beyond `tolerance_mm` 1"
     assert list(polygon_warnings([GOOD, off], 1.0, None)) == []  # a shortfall there
     assert list(polygon_warnings([GOOD], 1.0, 1)) == []
 

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fem.equilibrium import Critical
 from fem.errors import BadGeometry, NotConverged
-from fem.loadpath import Critical
-from fem.solve import Solution
+from fem.solution import Solution
 from profiletool.bending.response import Response
 from profiletool.joints.bounds import Limits
 from profiletool.joints.correction.correct import CannotBend, Steps, Trial, correct
@@ -19,7 +19,7 @@ from profiletool.joints.misfit import feet, residual_jacobian
 from profiletool.profile.curve import arc_length
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
-from profiletool.records.request import Material
+from profiletool.records.request import TubeSpec
 from profiletool.records.units import FloatArray
 from profiletool.verify.bench import FeBench
 
@@ -48,7 +48,7 @@ def trial_at(vector: FloatArray, bench: FeBench, near: Trial[Solution] | None) -
 
 @pytest.fixture(scope="module")
 def bent() -> Trial[Solution]:
-    return trial_at(VECTOR, FeBench(Material()), None)
+    return trial_at(VECTOR, FeBench(TubeSpec()), None)
 
 
 def beside(shape: Shape, off_mm: float = 0.7) -> FloatArray:
@@ -60,7 +60,7 @@ def beside(shape: Shape, off_mm: float = 0.7) -> FloatArray:
 
 
 def test_motion_against_differences(bent: Trial[Solution]) -> None:
-    bench = FeBench(Material())
+    bench = FeBench(TubeSpec())
     points = beside(bent.shape)
     jacobian = residual_jacobian(feet(bent.shape.facing, points, 1.0), bench.motion(bent))
     assert jacobian.shape == (len(points), len(NAMES))
@@ -80,7 +80,7 @@ def test_a_short_root_lets_the_tube_slide() -> None:
     # Joint 1 nearer to the profile's start than its root is long.
     vector = VECTOR.copy()
     vector[3] = 4.0
-    bench = FeBench(Material())
+    bench = FeBench(TubeSpec())
     at = trial_at(vector, bench, None)
     heading = 2.5 + vector[-2]
     slide = bench.motion(at)[3]
@@ -101,14 +101,14 @@ def test_a_target_made_by_fe_is_reached(bent: Trial[Solution]) -> None:
     off = np.array([0.3, 0.3, 1.0, 1.5, -0.01, 0.0, -0.3])
     said: list[str] = []
     found = correct(
-        FeBench(Material()), Response.load(), NUMBERS, VECTOR + off, target_of(bent.shape),
+        FeBench(TubeSpec()), Response.load(), NUMBERS, VECTOR + off, target_of(bent.shape),
         Steps(0.0, 0.0, 0.0), 0.3, said.append,
     )  # fmt: skip
     assert found.rms_mm[0] > 0.3
     assert np.sqrt(np.mean(found.best.feet.gap[:-3] ** 2)) < 0.1
     assert len(found.rms_mm) == len(said) <= 6
     # The state is one of the actuator that is handed back.
-    alone, _ = FeBench(Material()).bend(found.best.actuator, 1.0, None)
+    alone, _ = FeBench(TubeSpec()).bend(found.best.actuator, 1.0, None)
     assert found.best.shape.facing == pytest.approx(alone.facing, abs=0.02)
 
 
@@ -131,7 +131,7 @@ def test_what_cannot_be_bent(
 ) -> None:
     monkeypatch.setattr("profiletool.verify.bench.solve", failing(error))
     with pytest.raises(CannotBend) as caught:
-        FeBench(Material()).bend(NUMBERS.unpack(VECTOR), 1.0, None)
+        FeBench(TubeSpec()).bend(NUMBERS.unpack(VECTOR), 1.0, None)
     assert str(caught.value) == says
     assert caught.value.reached == reached
 
@@ -142,7 +142,7 @@ def test_a_path_that_ends_cannot_be_bent(
     ended = replace(bent.state, critical=Critical("limit point", 0.09))
     monkeypatch.setattr("profiletool.verify.bench.solve", lambda *_, **__: ended)
     with pytest.raises(CannotBend, match=r"limit point at 0\.90 bar") as caught:
-        FeBench(Material()).bend(NUMBERS.unpack(VECTOR), 1.0, None)
+        FeBench(TubeSpec()).bend(NUMBERS.unpack(VECTOR), 1.0, None)
     assert caught.value.reached == 0.09
 
 
@@ -153,5 +153,5 @@ def test_too_far_from_a_known_state_it_goes_from_rest(
         "profiletool.verify.bench.solve_near", failing(NotConverged("far", (), 0.0))
     )
     monkeypatch.setattr("profiletool.verify.bench.solve", lambda *_, **__: bent.state)
-    _, state = FeBench(Material()).bend(NUMBERS.unpack(VECTOR), 1.0, bent)
+    _, state = FeBench(TubeSpec()).bend(NUMBERS.unpack(VECTOR), 1.0, bent)
     assert state is bent.state

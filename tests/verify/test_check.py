@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import fem.solve
+import fem
 from fem.errors import NotConverged
 from fem.material import PAPER_RUBBER
 from formula.theta import RubberLaw
@@ -18,8 +18,9 @@ from profiletool.errors import UnreadableInput
 from profiletool.files.design_json import load_design, to_json
 from profiletool.profile.curve import arc_length
 from profiletool.records.design import Design, Joint
-from profiletool.records.frames import Pose, side_sign
+from profiletool.records.frames import Pose
 from profiletool.records.profile import Profile
+from profiletool.records.side import side_sign
 from profiletool.verify.check import check, magnitude
 from profiletool.verify.lines import Placement
 from profiletool.verify.run import DOWN, LYING, STEPS, Run, inflate, pressures_to, run_design, solve
@@ -58,9 +59,7 @@ def heading_deg(line: np.ndarray) -> float:
     return float(np.degrees(np.arctan2(dy, dx)))
 
 
-def changed(
-    monkeypatch: pytest.MonkeyPatch, change: Callable[[fem.solve.Solution], object]
-) -> None:
+def changed(monkeypatch: pytest.MonkeyPatch, change: Callable[[fem.Solution], object]) -> None:
     real = solve
     monkeypatch.setattr("profiletool.verify.run.solve", lambda *a, **k: change(real(*a, **k)))
 
@@ -192,7 +191,7 @@ def test_a_design_that_does_not_converge(
 def test_a_limit_point_before_the_operating_pressure(
     samples: Path, run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    ended = fem.solve.Critical("limit point", 0.05)
+    ended = fem.Critical("limit point", 0.05)
     changed(monkeypatch, lambda s: replace(s, states=s.states[:-3], critical=ended))
     done = check(short(samples), along(run.verification.rest.shape.facing))
     assert done.failure == "limit point at 0.50 bar"
@@ -216,7 +215,7 @@ def test_a_design_that_cannot_be_modelled(samples: Path, run: Run) -> None:
 def test_angles_go_on_beyond_half_a_turn(samples: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     turns = iter(np.radians([0.0, 170.0, -160.0, 100.0]))
 
-    def wound(found: fem.solve.Solution) -> fem.solve.Solution:
+    def wound(found: fem.Solution) -> fem.Solution:
         return replace(
             found, states=tuple(replace(s, theta=np.array([next(turns)])) for s in found.states)
         )

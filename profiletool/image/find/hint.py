@@ -43,18 +43,18 @@ def check_hint(hint: Hint, shape: tuple[int, int]) -> None:
         inside = min(x, y) >= 0 and x + w <= width and y + h <= height
         if not inside or min(w, h) < LEAST_PX:
             raise UsageError(
-                f"--box {x:g},{y:g},{w:g},{h:g} does not fit; give X,Y,W,H in pixels, at least "
+                f"`box` {x:g},{y:g},{w:g},{h:g} does not fit; give X,Y,W,H in pixels, at least "
                 f"{LEAST_PX} wide and high and inside the {width} x {height} of the picture"
             )
     if hint.point is not None:
         x, y = hint.point
         if not (0 <= x < width and 0 <= y < height):
             raise UsageError(
-                f"--point {x:g},{y:g} is outside the picture; give X,Y in pixels, below "
+                f"`point` {x:g},{y:g} is outside the picture; give X,Y in pixels, below "
                 f"{width},{height}"
             )
         if hint.box is not None and not _in_box(hint.point, hint.box):
-            raise UsageError("--point lies outside --box; give a point inside it, or one of them")
+            raise UsageError("`point` lies outside `box`; give a point inside it, or one of them")
     if hint.mask is not None:
         if hint.mask.shape != shape:
             raise UsageError(

@@ -132,7 +132,7 @@ def _given(rgb: NDArray[np.uint8], hint: Hint, step: int) -> _Found:
         mask = mask & ~_outside(hint.box, mask.shape, 1.0)
     if hint.point is not None:
         if not fill_holes(mask)[pixel_at(hint.point, mask.shape)]:
-            raise UsageError("--point lies outside what --mask holds; give one of them")
+            raise UsageError("`point` lies outside what `mask` holds; give one of them")
         whole = choose_object(mask, hint.point)
     else:
         whole = largest_filled(mask)
@@ -203,7 +203,7 @@ def _searched(
             found,
             rgb,
             "the object cannot be told from the ground for certain "
-            f"({100 * best.confidence:.0f} %); say where it is with --box, --point or --mask, or "
+            f"({100 * best.confidence:.0f} %); say where it is with `box`, `point` or `mask`, or "
             "photograph it on a plain ground of another colour",
         )
     held = is_held(view, best.mask)
@@ -211,8 +211,8 @@ def _searched(
         raise _unsure(
             found,
             rgb,
-            "a hand seems to hold the object and hide part of it; lay it down, or say with --box, "
-            "--point or --mask what to take",
+            "a hand seems to hold the object and hide part of it; lay it down, or say with `box`, "
+            "`point` or `mask` what to take",
         )
     if point is None:
         refuse_another(best, found)

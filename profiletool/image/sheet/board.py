@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from profiletool.records.picture import Picture
 from profiletool.records.units import FloatArray
 
-# Single markers are 4 x 4 (`--marker-mm`). These have 5 x 5 bits, a grid of another size, and
+# Single markers are 4 x 4 (`marker_mm`). These have 5 x 5 bits, a grid of another size, and
 # differ among themselves in six bits at least: neither is ever read as the other.
 _DICTIONARY = cv2.aruco.DICT_5X5_250
 _LEAST_SPREAD = 2.0  # root of the corners' squared distances to a line, in squares

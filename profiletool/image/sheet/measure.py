@@ -115,6 +115,6 @@ def measure(
 def _check_distance(given_mm: float, seen_mm: float) -> None:
     if not seen_mm / _FAR_OFF < given_mm < seen_mm * _FAR_OFF:
         raise UsageError(
-            f"--camera-distance is {given_mm:g} mm, but the sheet shows the camera about "
+            f"`camera_distance_mm` is {given_mm:g} mm, but the sheet shows the camera about "
             f"{seen_mm:.0f} mm above it; give millimetres from the lens to the sheet"
         )

@@ -247,7 +247,7 @@ def _warnings(
             made.picture.mm_per_px is not None and made.picture.mm_per_px * _COARSE_PX_PER_MM > 1.0
         ),
         "the camera's distance is little sure (no focal length in the file); give "
-        "--camera-distance": made.camera.height_share > _SURE_SHARE,
+        "`camera_distance_mm`": made.camera.height_share > _SURE_SHARE,
         "markers of a second sheet are seen; only one was used": others,
     }
     return tuple(text for text, holds in said.items() if holds)

@@ -1,8 +1,8 @@
 """An actuator corrected until its bent shape lies on the profile, whoever bends it.
 
 Gauss-Newton on the numbers of `profiletool.joints.correction.parameters`: a bench gives the bent
-shape and what each number does to it. First all numbers are free; then they take the steps that can be
-built, and what stays free follows.
+shape and what each number does to it. First all numbers are free; then they take the steps that can
+be built, and what stays free follows.
 """
 
 from __future__ import annotations

@@ -22,7 +22,7 @@ from profiletool.joints.paper.pieces import cross, direction
 from profiletool.records.design import Misfit
 from profiletool.records.frames import Pose, Shape
 from profiletool.records.profile import Profile
-from profiletool.records.request import INTERFERENCE_MM, Material
+from profiletool.records.request import INTERFERENCE_MM, TubeSpec
 from profiletool.records.units import BAR_PER_MPA, FloatArray
 
 TOLERANCE_MM = 0.25
@@ -111,14 +111,14 @@ class Choice:
     limits: Limits
 
 
-def choose(profile: Profile, model: Model, material: Material, wish: Wish | None = None) -> Choice:
+def choose(profile: Profile, model: Model, material: TubeSpec, wish: Wish | None = None) -> Choice:
     """Choose number, places, senses, cuts and sectors of the joints, pressure and base.
 
     Parameters
     ----------
     profile : Profile
     model : Model
-    material : Material
+    material : TubeSpec
     wish : Wish, optional
 
     Raises
@@ -135,7 +135,7 @@ def choose(profile: Profile, model: Model, material: Material, wish: Wish | None
     if np.abs(away).max() <= wish.tolerance_mm:
         raise NoObject(
             f"the profile is straight to {wish.tolerance_mm:g} mm: there is nothing to bend; "
-            "take another --side or stretch, or a smaller --tolerance"
+            "take another `side` or stretch, or a smaller `tolerance_mm`"
         )
     limits, cuts = limits_of(model, material, wish.base_free), cuts_of(model, material)
     reached = profile

@@ -19,7 +19,7 @@ from profiletool.profile.offset import offset_points
 from profiletool.records.design import AWAY_DEG, TOWARD_DEG, Joint
 from profiletool.records.frames import Pose
 from profiletool.records.profile import Profile
-from profiletool.records.request import INTERFERENCE_MM, Material
+from profiletool.records.request import INTERFERENCE_MM, TubeSpec
 from profiletool.records.units import FloatArray
 
 NEAR_DEG = 2.0  # an angle of the table this much above the wanted one is near enough
@@ -48,7 +48,7 @@ class Layout:
         )
 
 
-def theta_table(formula: Formula, material: Material) -> Table:
+def theta_table(formula: Formula, material: TubeSpec) -> Table:
     """Tabulate the formula for cuts in whole meshes, up to the highest pressure.
 
     Raises
@@ -72,7 +72,7 @@ def theta_table(formula: Formula, material: Material) -> Table:
     return make_table(formula, openF_mm=cuts.tolist(), pressures_bar=pressures)
 
 
-def joint_rules(table: Table, material: Material, tolerance_mm: float) -> Rules:
+def joint_rules(table: Table, material: TubeSpec, tolerance_mm: float) -> Rules:
     """Say what a joint can do by the table."""
     return Rules(
         radius_mm=material.radius_mm,
@@ -85,7 +85,7 @@ def joint_rules(table: Table, material: Material, tolerance_mm: float) -> Rules:
 
 
 def lay_out(
-    profile: Profile, sectors: Sequence[Sector], table: Table, material: Material
+    profile: Profile, sectors: Sequence[Sector], table: Table, material: TubeSpec
 ) -> Layout:
     """Measure the sectors and look the angles up.
 
@@ -138,7 +138,7 @@ def _nearest_cuts(table: Table, openF: Sequence[float], wanted: Sequence[float])
     return cuts
 
 
-def _phalanges(profile: Profile, sectors: Sequence[Sector], material: Material) -> FloatArray:
+def _phalanges(profile: Profile, sectors: Sequence[Sector], material: TubeSpec) -> FloatArray:
     """F of every joint by eq. (10), NS measured between points of the axis curve: (n,).
 
     Straight, as in the paper: "between the intersection points of the curved axis with the
@@ -171,7 +171,7 @@ def _covered(sector: Sector, radius_mm: float) -> float:
     return sector.openF_mm + max(opening, 0.0)
 
 
-def _base(profile: Profile, first: Sector, material: Material) -> tuple[float, Pose]:
+def _base(profile: Profile, first: Sector, material: TubeSpec) -> tuple[float, Pose]:
     """Root length and pose: straight along the first line, so that joint 1 lies on its vertex.
 
     The root is as long as asked, longer only where the profile starts with a longer straight or

@@ -25,7 +25,7 @@ _ALIKE = 5.0  # a chain this many times as long as all others is the profile, th
 
 
 @dataclass(frozen=True)
-class Chain:
+class Polyline:
     """A polyline, ``points`` (N, 2) in mm, y up; if ``closed``, the first point is not repeated."""
 
     points: FloatArray
@@ -43,7 +43,7 @@ class Chain:
         return np.array([self.points.min(axis=0), self.points.max(axis=0)])
 
 
-def clean(points: FloatArray, closed: bool, gap: float = JOIN_MM) -> Chain:
+def clean(points: FloatArray, closed: bool, gap: float = JOIN_MM) -> Polyline:
     """Drop repeated points (N, 2) and see whether the ends meet within ``gap`` mm.
 
     Raises
@@ -58,7 +58,7 @@ def clean(points: FloatArray, closed: bool, gap: float = JOIN_MM) -> Chain:
     step = np.hypot(*np.diff(points, axis=0).T)
     points = points[np.concatenate([[True], step > SAME_MM])]
     if len(points) < 3:
-        return Chain(points, False)
+        return Polyline(points, False)
     ends = float(np.hypot(*(points[-1] - points[0])))
     # Three points out and back, or a piece hardly longer than the gap, have no inside.
     if ends <= gap and step.sum() > 4 * gap and len(points) > 3:
@@ -67,10 +67,10 @@ def clean(points: FloatArray, closed: bool, gap: float = JOIN_MM) -> Chain:
             points = np.vstack([0.5 * (points[:1] + points[-1:]), points[1:-1]])
         else:
             points = points[:-1]
-    return Chain(points, closed)
+    return Polyline(points, closed)
 
 
-def join(chains: Iterable[Chain]) -> list[Chain]:
+def join(chains: Iterable[Polyline]) -> list[Polyline]:
     """Join open chains end to end; a point where three or more meet ends them.
 
     Doubled chains count once. First the ends that coincide, then those within JOIN_MM, so that
@@ -89,7 +89,7 @@ def join(chains: Iterable[Chain]) -> list[Chain]:
     return pieces
 
 
-def choose(chains: Sequence[Chain]) -> Chain:
+def choose(chains: Sequence[Polyline]) -> Polyline:
     """Pick the profile: the longest closed chain around all others, or the one that stands out.
 
     Raises
@@ -112,13 +112,13 @@ def choose(chains: Sequence[Chain]) -> Chain:
     return ranked[0]
 
 
-def _inside(inner: Chain, outer: Chain) -> bool:
+def _inside(inner: Polyline, outer: Polyline) -> bool:
     low, high = outer.box
     return bool(np.all(inner.box[0] >= low - JOIN_MM) and np.all(inner.box[1] <= high + JOIN_MM))
 
 
-def _without_doubles(chains: Iterable[Chain]) -> list[Chain]:
-    kept: dict[tuple[bool, bytes], Chain] = {}
+def _without_doubles(chains: Iterable[Polyline]) -> list[Polyline]:
+    kept: dict[tuple[bool, bytes], Polyline] = {}
     for chain in chains:
         if len(chain.points) > 1:
             rounded = np.rint(chain.points / _EXACT_MM).astype(np.int64)
@@ -127,7 +127,7 @@ def _without_doubles(chains: Iterable[Chain]) -> list[Chain]:
     return list(kept.values())
 
 
-def _linked(chains: Sequence[Chain], gap: float) -> list[Chain]:
+def _linked(chains: Sequence[Polyline], gap: float) -> list[Polyline]:
     """Join chains whose ends lie within ``gap`` mm; those that come in closed are not passed."""
     if not chains:
         return []

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from profiletool.errors import NoObject, UnreadableInput
 from profiletool.files.read import read_file
-from profiletool.profile.drawing.chain import Chain, choose
+from profiletool.profile.drawing.chain import Polyline, choose, clean
 from profiletool.profile.drawing.read_csv import read_csv
 from profiletool.profile.drawing.read_dxf import read_dxf
 from profiletool.profile.drawing.read_svg import read_svg
+from profiletool.records.profile import Drawing
 from profiletool.records.units import FloatArray
 
 SUFFIXES = (".dxf", ".svg", ".csv")
@@ -20,23 +20,7 @@ MAX_BYTES = 20_000_000
 MAX_CLOSE_PAIRS = 2e7  # of pieces of a line that might cross
 
 
-@dataclass(frozen=True)
-class VectorProfile:
-    """A drawn profile.
-
-    Attributes
-    ----------
-    points : (N, 2) mm, x to the right, y up
-        In the drawing's own place and order of travel, no two successive ones alike, 3 at least.
-    closed : bool
-        The last point joins the first, which is not repeated.
-    """
-
-    points: FloatArray
-    closed: bool
-
-
-def load_vector(path: Path) -> VectorProfile:
+def load_vector(path: Path) -> Drawing:
     """Read the one profile of a DXF, SVG or CSV file; the suffix tells which it is.
 
     Parameters
@@ -46,7 +30,7 @@ def load_vector(path: Path) -> VectorProfile:
 
     Returns
     -------
-    VectorProfile
+    Drawing
         In mm, y up. Of several lines, the longest closed one around all others, or the one that
         is much longer than the rest.
 
@@ -69,7 +53,22 @@ def load_vector(path: Path) -> VectorProfile:
         _check(chain)
     except (UnreadableInput, NoObject) as error:
         raise type(error)(_one_line(f"{path}: {error}")) from None
-    return VectorProfile(points=chain.points, closed=chain.closed)
+    return Drawing(points=chain.points, closed=chain.closed)
+
+
+def drawing_of(points: FloatArray) -> Drawing:
+    """Take points (N, 2), mm, y up, for a drawn line; closed where the last meets the first.
+
+    Raises
+    ------
+    UnreadableInput
+        Too few points, or coordinates that are not finite or absurdly large.
+    NoObject
+        The line crosses itself.
+    """
+    chain = clean(np.asarray(points, dtype=float), closed=False)
+    _check(chain)
+    return Drawing(points=chain.points, closed=chain.closed)
 
 
 def _one_line(text: str) -> str:
@@ -84,7 +83,7 @@ def _bytes(path: Path) -> bytes:
     return data
 
 
-def _check(chain: Chain) -> None:
+def _check(chain: Polyline) -> None:
     import shapely
 
     if len(chain.points) < 3:
@@ -95,7 +94,7 @@ def _check(chain: Chain) -> None:
         raise NoObject("the line crosses or touches itself; redraw it as one plain line")
 
 
-def _check_tangle(chain: Chain) -> None:
+def _check_tangle(chain: Polyline) -> None:
     """Refuse a line whose pieces lie across each other so much that crossings take for ever."""
     import shapely
 

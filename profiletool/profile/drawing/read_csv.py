@@ -8,12 +8,12 @@ import numpy as np
 
 from profiletool.errors import UnreadableInput
 from profiletool.files.columns import NUMBER, read_lines, shown
-from profiletool.profile.drawing.chain import MAX_POINTS, Chain, clean
+from profiletool.profile.drawing.chain import MAX_POINTS, Polyline, clean
 
 _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
 
 
-def read_csv(data: bytes) -> Chain:
+def read_csv(data: bytes) -> Polyline:
     """Read points from text.
 
     Parameters
@@ -24,7 +24,7 @@ def read_csv(data: bytes) -> Chain:
 
     Returns
     -------
-    Chain
+    Polyline
         In mm, y up; closed where the last point meets the first.
 
     Raises

@@ -16,7 +16,7 @@ from profiletool.profile.drawing.chain import (
     FLAT_MM,
     MAX_COORDINATE_MM,
     MAX_POINTS,
-    Chain,
+    Polyline,
     clean,
     join,
 )
@@ -54,7 +54,7 @@ _DAMAGE = (
 logging.getLogger("ezdxf").addHandler(logging.NullHandler())
 
 
-def read_dxf(path: Path) -> list[Chain]:
+def read_dxf(path: Path) -> list[Polyline]:
     """Read the chains of a drawing's model space.
 
     Parameters
@@ -64,7 +64,7 @@ def read_dxf(path: Path) -> list[Chain]:
 
     Returns
     -------
-    list of Chain
+    list of Polyline
         In mm (unitless drawings are taken as mm), y up, entities joined end to end. Layers that
         are off or frozen, invisible entities, blocks and paper space are left out.
 
@@ -142,7 +142,7 @@ def _visible(drawing: Drawing) -> list[Any]:
     ]
 
 
-def _pieces(entities: Iterable[Any], factor: float) -> list[Chain]:
+def _pieces(entities: Iterable[Any], factor: float) -> list[Polyline]:
     left, left_of_splines, pieces = MAX_POINTS, MAX_SPLINE_POINTS, []
     for entity in entities:
         spline = entity.dxftype() == "SPLINE"

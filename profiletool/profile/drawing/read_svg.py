@@ -14,7 +14,7 @@ from profiletool.profile.drawing.chain import (
     FLAT_MM,
     MAX_COORDINATE_MM,
     MAX_POINTS,
-    Chain,
+    Polyline,
     clean,
     join,
 )
@@ -25,7 +25,7 @@ from profiletool.records.units import FloatArray
 _DAMAGE = (ValueError, TypeError, IndexError, KeyError, AttributeError, ArithmeticError)
 
 
-def read_svg(data: bytes) -> list[Chain]:
+def read_svg(data: bytes) -> list[Polyline]:
     """Read the chains of a drawing.
 
     Parameters
@@ -36,7 +36,7 @@ def read_svg(data: bytes) -> list[Chain]:
 
     Returns
     -------
-    list of Chain
+    list of Polyline
         In mm, y up, joined end to end; hidden shapes, markers, masks, symbols and a rectangle
         that is the page itself are left out.
 
@@ -68,7 +68,7 @@ def read_svg(data: bytes) -> list[Chain]:
     return join(_without_page(pieces, drawing.width, drawing.height))
 
 
-def _pieces(drawing: Any) -> Iterator[tuple[Chain, bool]]:
+def _pieces(drawing: Any) -> Iterator[tuple[Polyline, bool]]:
     """Yield the chains and whether each was drawn as a rectangle."""
     from svgelements import Rect, Shape
 
@@ -161,7 +161,7 @@ def _bounded(size_mm: float) -> float:
     return max(float(size_mm), 1e-9)
 
 
-def _without_page(pieces: list[tuple[Chain, bool]], width: Any, height: Any) -> list[Chain]:
+def _without_page(pieces: list[tuple[Polyline, bool]], width: Any, height: Any) -> list[Polyline]:
     """Leave out rectangles that cover the page (px), unless there is nothing else."""
     if not (isinstance(width, float) and isinstance(height, float)):  # a share of who knows what
         return [chain for chain, _ in pieces]

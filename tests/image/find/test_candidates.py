@@ -92,7 +92,7 @@ def test_what_cannot_be_told_is_refused(shared: Path, name: str, ground: str) ->
     assert caught.value.exit_code == 5
     text = str(caught.value)
     assert "\n" not in text
-    assert all(option in text for option in ("--box", "--point", "--mask"))
+    assert all(option in text for option in ("`box`", "`point`", "`mask`"))
     candidates = caught.value.candidates
     assert 1 <= len(candidates) <= 4
     for mask, confidence, method in candidates:

@@ -113,7 +113,7 @@ def test_height_is_as_sure_as_is_said(shot: Shot, focal_error: float | None, sur
     height = shot.distance * np.cos(np.radians(shot.tilt))
     assert made.camera.height_share < sure
     assert abs(made.camera.height_mm / height - 1) < 2.5 * made.camera.height_share + 1e-3
-    unsure = any("--camera-distance" in text for text in made.warnings)
+    unsure = any("`camera_distance_mm`" in text for text in made.warnings)
     assert unsure == (made.camera.height_share > 0.15)
 
 

@@ -21,12 +21,12 @@ from profiletool.joints.optimal.search import search
 from profiletool.profile.target import Reach, profile_of_line
 from profiletool.records.frames import Pose
 from profiletool.records.profile import Profile
-from profiletool.records.request import Material
+from profiletool.records.request import TubeSpec
 from profiletool.records.units import FloatArray
 from profiletool.verdict.missed import missed, reasons, tightest_radius
 
 MODEL = FormulaModel(load_formula(), 10.0)
-MATERIAL = Material()
+MATERIAL = TubeSpec()
 LIMITS = limits_of(MODEL, MATERIAL)
 CUTS = cuts_of(MODEL, MATERIAL)
 
@@ -84,7 +84,7 @@ def test_the_vertex_lies_as_far_from_both_edges_of_the_window(sense: float) -> N
     assert [x, y] == pytest.approx(end, abs=1e-6)
 
 
-def within_limits(choice: Choice, material: Material = MATERIAL) -> None:
+def within_limits(choice: Choice, material: TubeSpec = MATERIAL) -> None:
     chain, limits = choice.chain, choice.limits
     gaps = np.diff(chain.centre) - 0.5 * (chain.openF[1:] + chain.openF[:-1])
     assert np.all(gaps >= limits.wrap_mm - 1e-9)

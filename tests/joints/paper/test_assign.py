@@ -13,10 +13,10 @@ from profiletool.joints.paper.sectors import Sector, discretise
 from profiletool.profile.target import Reach, profile_of_line, profile_of_object
 from profiletool.records.design import AWAY_DEG, TOWARD_DEG
 from profiletool.records.profile import Profile
-from profiletool.records.request import Material
+from profiletool.records.request import TubeSpec
 
 PAPER = load_formula()
-MATERIAL = Material()
+MATERIAL = TubeSpec()
 TABLE = theta_table(PAPER, MATERIAL)
 T = np.linspace(0.0, 2.0 * np.pi, 2881)[:-1]
 CIRCLE = 30.0 * np.column_stack([np.cos(T), np.sin(T)])

@@ -1,0 +1,74 @@
+"""The parameters of an actuator that its states are differentiated by."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from fem.actuator import Actuator, Window
+
+ANGLE_STEP, LENGTH_STEP = 1e-5, 1e-4  # of the differences: rad, mm
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of an actuator.
+
+    Attributes
+    ----------
+    segment : int or None
+        The stretch of the tube that it changes; None for the whole tube.
+    step : float
+        For differences, mm or rad.
+    change : callable
+        Changes an actuator by an amount.
+    """
+
+    segment: int | None
+    step: float
+    change: Callable[[Actuator, float], Actuator]
+
+
+def families(count: int) -> tuple[tuple[Parameter, ...], ...]:
+    """Families of parameters that can be changed at once: no two have a ring in common.
+
+    In order: each window's alpha, all windows' lengths, all wrapped sectors' lengths, the wall;
+    for ``count`` windows.
+    """
+    windows, wrapped = range(1, 2 * count, 2), range(0, 2 * count + 1, 2)
+    return (
+        # The bricks of the whole tube end where the sectors do: they move with each alpha.
+        *((Parameter(None, ANGLE_STEP, _alpha(k // 2)),) for k in windows),
+        tuple(Parameter(k, LENGTH_STEP, _stretch(k)) for k in windows),
+        tuple(Parameter(k, LENGTH_STEP, _stretch(k)) for k in wrapped),
+        (Parameter(None, LENGTH_STEP, _thicken),),
+    )
+
+
+def _thicken(actuator: Actuator, amount: float) -> Actuator:
+    return replace(actuator, wall=actuator.wall + amount)
+
+
+def _alpha(number: int) -> Callable[[Actuator, float], Actuator]:
+    def change(actuator: Actuator, amount: float) -> Actuator:
+        windows = list(actuator.windows)
+        windows[number] = replace(windows[number], alpha=windows[number].alpha + amount)
+        return replace(actuator, windows=tuple(windows))
+
+    return change
+
+
+def _stretch(segment: int) -> Callable[[Actuator, float], Actuator]:
+    """Lengthen segment 2 k (wrapped sector k) or 2 k + 1 (window k); all beyond moves on."""
+
+    def change(actuator: Actuator, amount: float) -> Actuator:
+        def moved(number: int, w: Window) -> Window:
+            own = 2 * number + 1
+            if own == segment:
+                return replace(w, centre=w.centre + 0.5 * amount, openF=w.openF + amount)
+            return replace(w, centre=w.centre + amount) if own > segment else w
+
+        windows = tuple(moved(number, w) for number, w in enumerate(actuator.windows))
+        return replace(actuator, length=actuator.length + amount, windows=windows)
+
+    return change

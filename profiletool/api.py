@@ -1,0 +1,282 @@
+"""The library: designs from Python, in a script or a notebook."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from formula.theta import Formula, theta_deg
+from profiletool.bending.kinematics import Bend, deform
+from profiletool.campaign.derive import CampaignPlan, Derivation, check_plan, derive, load_base
+from profiletool.campaign.runs import JOINT_RUN
+from profiletool.campaign.store import Store, default_folder
+from profiletool.campaign.workers import run_all
+from profiletool.errors import UsageError
+from profiletool.files.formula import read_formula
+from profiletool.joints.misfit import misfit_to
+from profiletool.joints.optimal_method import optimal_plan
+from profiletool.joints.paper_method import paper_plan
+from profiletool.joints.plan import Plan
+from profiletool.joints.windows import best_seam
+from profiletool.pipeline import Result, run
+from profiletool.profile.drawing.load import drawing_of
+from profiletool.records.design import Design, Fit, FormulaRef
+from profiletool.records.making import check_request, request_of
+from profiletool.records.picture import Picture
+from profiletool.records.profile import Drawing, Profile
+from profiletool.records.request import Request
+from profiletool.records.side import side_sign
+from profiletool.records.units import FloatArray
+from profiletool.subject.find import Subject
+from profiletool.subject.find import find_subject as find
+from profiletool.verify.check import Check, check
+
+Source = str | PathLike[str] | NDArray[Any] | Picture | Drawing | Profile
+Say = Callable[[str], None]
+
+
+def design(source: Source | Request, *, say: Say | None = None, **options: Any) -> Result:
+    """Design an actuator that mirrors the side of an object.
+
+    Parameters
+    ----------
+    source : path, array, Picture, Drawing or Profile
+        A picture or drawing as the command `design` takes it; (H, W, 3), (H, W, 4) or (H, W)
+        uint8 for a picture in RGB, RGBA or grey; (N, 2) for the points of a drawn line, mm, y up,
+        closed where the last point repeats the first; or a profile to follow as it is.
+    say : callable, optional
+        Takes one line of progress at a time.
+    **options
+        Fields of the options by name: ``height_mm=107.5``, ``side="right"``, ``joints=5``,
+        ``max_pressure_bar=1.5``, ``verify=False`` ...; see `Request`.
+
+    Returns
+    -------
+    Result
+        ``print(result)`` shows the joints; ``result.design`` is what design.json holds.
+
+    Raises
+    ------
+    ProfiletoolError
+        Of the class that tells what is wrong; a design that is infeasible or not verified is no
+        error but says so.
+    """
+    return run(request_for(source, **options), say or _silence)
+
+
+def find_subject(source: Source | Request, *, say: Say | None = None, **options: Any) -> Subject:
+    """Find the object and the profile that a tube shall follow: the first step of `design`.
+
+    Parameters
+    ----------
+    source, say, **options
+        As for `design`.
+
+    Returns
+    -------
+    Subject
+        With the silhouette, the scale and the profile (mm).
+
+    Raises
+    ------
+    UnreadableInput, NoScale, NoObject, UsageError
+    """
+    request = request_for(source, **options)
+    check_request(request)
+    return find(request, say or _silence)
+
+
+def plan_joints(profile: Profile, *, say: Say | None = None, **options: Any) -> Plan:
+    """Choose joints and pressure for a profile, without finite elements: the second step.
+
+    Parameters
+    ----------
+    profile : Profile
+        Such as ``find_subject(...).profile``.
+    say, **options
+        As for `design`.
+
+    Returns
+    -------
+    Plan
+        ``plan.layout`` holds the joints (mm, deg) and the pressure (bar).
+
+    Raises
+    ------
+    UsageError, NoObject, Infeasible
+    """
+    request = request_for(profile, **options)
+    check_request(request)
+    formula = read_formula(request.formula, request.extrapolate)
+    make = optimal_plan if request.method == "optimal" else paper_plan
+    return make(request, profile, formula, say or _silence)
+
+
+def verify_design(
+    design: Design,
+    target: Profile | NDArray[np.float64],
+    *,
+    formula: Path | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Check:
+    """Run finite elements of a whole design, such as one with a joint changed by hand.
+
+    Parameters
+    ----------
+    design : Design
+        Joints by their places: ``F_mm`` and the root follow from ``centre_mm``.
+    target : Profile, or (N, 2) mm
+        What the object-facing line shall lie on, in the object frame.
+    formula : Path, optional
+        For the formula's own angles; the paper's by default.
+    progress : callable, optional
+        Takes the pressure reached so far, bar.
+
+    Returns
+    -------
+    Check
+        ``check.design`` with the angles and the misfit by formula and by FE, and whether it is
+        ``verified``; ``check.failure`` says why not.
+
+    Raises
+    ------
+    UnreadableInput
+        The file holds no formula.
+    """
+    points = np.asarray(target.points if isinstance(target, Profile) else target, dtype=float)
+    return check(recomputed(design, points, read_formula(formula)), points, progress)
+
+
+def recomputed(design: Design, target: FloatArray, formula: Formula) -> Design:
+    """Design with everything that follows from its joints computed anew, and not yet verified."""
+    length = design.tube.length_mm
+    ends = [*(joint.centre_mm for joint in design.joints[1:]), length]
+    joints = tuple(
+        replace(
+            joint,
+            F_mm=end - joint.centre_mm,
+            theta_formula_deg=float(
+                theta_deg(formula, joint.alpha_closed_deg, joint.openF_mm, design.pressure_bar)
+            ),
+            theta_fe_deg=None,
+            theta_response_deg=None,
+            stretch_fe=None,
+        )
+        for joint, end in zip(design.joints, ends, strict=True)
+    )
+    bends = [
+        Bend(j.centre_mm, j.openF_mm, float(np.radians(j.sense * j.theta_formula_deg)))
+        for j in joints
+    ]
+    radius, sign = 0.5 * design.tube.outer_diameter_mm, side_sign(design.source.side)
+    shape = deform(bends, length, radius, design.base_pose, sign)
+    return replace(
+        design,
+        tube=replace(design.tube, root_mm=joints[0].centre_mm),
+        gauze=replace(design.gauze, seam_deg=best_seam(joints).seam_deg),
+        formula=FormulaRef(formula.name, formula.sha256),
+        joints=joints,
+        fit=Fit(formula=misfit_to(shape, target), fe=None),
+        verified=False,
+        sensitivity=(),
+    )
+
+
+def derive_formula(
+    plan: CampaignPlan,
+    *,
+    base: str | None = None,
+    workers: int = 1,
+    scheduler: str | None = None,
+    runs: Path | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Derivation:
+    """Derive a formula for a tube and a rubber from finite elements of single joints.
+
+    Parameters
+    ----------
+    plan : CampaignPlan
+        The tube (mm), the rubber, and the axes of the campaign (deg, mm, bar).
+    base : str, optional
+        A formula file, or "fe", whose campaign is carried over by similarity.
+    workers : int
+        Processes, one thread each.
+    scheduler : str, optional
+        A dask.distributed scheduler to run on instead, tcp://HOST:PORT.
+    runs : Path, optional
+        Folder of finished runs; the user's cache by default.
+    progress : callable, optional
+        Takes how many runs are done, and of how many.
+
+    Returns
+    -------
+    Derivation
+        ``formula_file(derivation, name)`` gives the bytes of the formula file.
+
+    Raises
+    ------
+    UsageError, UnreadableInput, NotVerified
+    """
+    check_plan(plan)
+    known = None if base is None else load_base(base)
+    store = Store(runs or default_folder(), JOINT_RUN)
+    return derive(
+        plan,
+        lambda tasks: run_all(
+            tasks, store, workers=workers, scheduler=scheduler, progress=progress
+        ),
+        known,
+    )
+
+
+def request_for(source: Source | Request, **options: Any) -> Request:
+    """Request for what `design` takes.
+
+    Raises
+    ------
+    UsageError
+        An array or an option that makes no sense.
+    """
+    if isinstance(source, Request):
+        if options:
+            raise UsageError("a request holds all options: give it none beside")
+        return source
+    formula = read_formula(_path(options.get("formula")), bool(options.get("extrapolate", False)))
+    options |= {name: _path(options.get(name)) for name in ("formula", "mask")}
+    if isinstance(source, str | PathLike):
+        return request_of(Path(source), options, formula)
+    given = _given(source) if isinstance(source, np.ndarray) else source
+    if isinstance(given, Profile):
+        options["side"] = given.side
+    file = Path("picture" if isinstance(given, Picture) else "profile")
+    return replace(request_of(file, options, formula), given=given)
+
+
+def _given(array: NDArray[Any]) -> Picture | Drawing:
+    """Take an array for a picture or for the points of a line."""
+    if array.ndim == 2 and array.shape[1] == 2:
+        return drawing_of(array)
+    if array.dtype == np.uint8 and array.ndim == 2:
+        return Picture(np.repeat(array[:, :, None], 3, axis=2), None, None, "array")
+    if array.dtype == np.uint8 and array.ndim == 3 and array.shape[2] in (3, 4):
+        alpha = array[:, :, 3].copy() if array.shape[2] == 4 else None
+        opaque = alpha is None or bool((alpha == 255).all())
+        return Picture(array[:, :, :3].copy(), None if opaque else alpha, None, "array")
+    raise UsageError(
+        "an array is a picture, (H, W, 3), (H, W, 4) or (H, W) uint8, or points, (N, 2) in mm; "
+        f"not {array.shape} {array.dtype}"
+    )
+
+
+def _path(name: str | PathLike[str] | None) -> Path | None:
+    return None if name is None else Path(name)
+
+
+def _silence(line: str) -> None:
+    del line

@@ -1,0 +1,91 @@
+"""Requests made from values by field name, and checked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from profiletool.errors import UsageError
+from profiletool.records.options import DESIGN, Option
+from profiletool.records.request import Look, Request, ScaleRequest, TubeSpec
+
+if TYPE_CHECKING:
+    from formula.theta import Formula
+
+
+def request_of(file: Path, values: Mapping[str, Any], formula: Formula | None = None) -> Request:
+    """Make a request from values by field name; what is None or missing has its default.
+
+    Parameters
+    ----------
+    file : Path
+    values : mapping
+        Field names of `DESIGN` to values.
+    formula : Formula, optional
+        Its tube and rubber are those of the request where none other are given.
+
+    Raises
+    ------
+    UsageError
+        A name is no field.
+    """
+    paths = {row.field: row.path for row in DESIGN}
+    unknown = sorted(set(values) - set(paths))
+    if unknown:
+        raise UsageError(f"{unknown[0]!r} is no option of a design; there are {', '.join(paths)}")
+    tube = TubeSpec()
+    if formula is not None:
+        tube = TubeSpec(formula.outer_diameter_mm, formula.wall_mm, rubber=formula.rubber)
+    parts: dict[str, Any] = {"scale": ScaleRequest(), "look": Look(), "tube": tube}
+    own = {}
+    for name, value in values.items():
+        holder, _, field = paths[name].rpartition(".")
+        if value is None:
+            continue
+        if holder:
+            parts[holder] = replace(parts[holder], **{field: value})
+        else:
+            own[field] = value
+    return Request(file, **parts, **own)
+
+
+def check_request(request: Request) -> None:
+    """Refuse values that no design can be made with.
+
+    Raises
+    ------
+    UsageError
+    """
+    for row in DESIGN:
+        _check(row, row.value(request))
+    tube = request.tube
+    if tube.pitch_mm <= tube.thread_mm:
+        raise UsageError(f"`pitch_mm` must be more than the thread, {tube.thread_mm:g} mm")
+    if tube.wall_mm >= tube.radius_mm:
+        raise UsageError("`wall_mm` must be less than half of `outer_diameter_mm`")
+    if not 0.0 <= request.start_pct < request.end_pct <= 100.0:
+        raise UsageError("`start_pct` and `end_pct` must be percentages, the first one the lower")
+
+
+def check_scale(scale: ScaleRequest) -> None:
+    """Refuse lengths that are no lengths.
+
+    Raises
+    ------
+    UsageError
+    """
+    for row in DESIGN:
+        if row.path.startswith("scale."):
+            _check(row, getattr(scale, row.field))
+
+
+def _check(row: Option, value: Any) -> None:
+    if value is None:
+        return
+    if row.above is not None and not (math.isfinite(value) and value > row.above):
+        raise UsageError(f"`{row.field}` must be a number above {row.above:g}, not {value:g}")
+    if row.least is not None and not (math.isfinite(value) and value >= row.least):
+        raise UsageError(f"`{row.field}` must be {row.least:g} or more, not {value:g}")

@@ -1,0 +1,222 @@
+"""The options of a design: one row each, from which flags, checks, TOML keys and tables are made.
+
+A message of the core names a field in backticks: "raise `max_length_mm`". So it reads in a
+notebook; `in_flags` turns it into the command's words: "raise --max-length".
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path, PurePath
+from typing import Any
+
+from profiletool.records.request import Request
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What an option holds.
+
+    Attributes
+    ----------
+    type : type
+        float, int, bool, str, Path, or tuple for numbers with commas between.
+    show : callable
+        A value as the report says it.
+    count : int
+        How many numbers with commas between it takes; 0 where it takes no list.
+    choices : tuple of str
+        What a str may be; empty where it may be anything.
+    """
+
+    type: type
+    show: Callable[[Any], str]
+    count: int = 0
+    choices: tuple[str, ...] = ()
+
+
+def _number(unit: str) -> Kind:
+    return Kind(float, lambda value: f"{value:g}{unit}")
+
+
+def _pixels(count: int) -> Kind:
+    return Kind(tuple, lambda values: ",".join(f"{v:g}" for v in values) + " px", count)
+
+
+def _choice(*choices: str) -> Kind:
+    return Kind(str, str, choices=choices)
+
+
+_MM, _BAR, _PERCENT, _DEG = _number(" mm"), _number(" bar"), _number(" %"), _number("°")
+_RATIO, _COUNT = _number(""), Kind(int, str)
+_YES = Kind(bool, lambda value: "yes" if value else "no")
+_FILE = Kind(Path, lambda value: PurePath(value).name)
+_TURN = Kind(str, lambda value: value if value == "auto" else f"{value:g}°", count=1)
+_ROOT = Kind(float, lambda value: f"at least {value:g} mm")
+
+
+@dataclass(frozen=True)
+class Option:
+    """One option of `design`.
+
+    Attributes
+    ----------
+    flag : str
+        As the command line takes it; without its dashes the key in a TOML file.
+    path : str
+        Where its value stands in a `Request`.
+    kind : Kind
+    help : str
+    above, least : float or None
+        Bounds: the value is greater than ``above``, and at least ``least``.
+    absent : str
+        What the report says where no value is given.
+    metavar : str
+    main : bool
+        Whether the report lists it even where it has its default.
+    off : bool
+        Whether there is a flag to turn it off, too.
+    """
+
+    flag: str
+    path: str
+    kind: Kind
+    help: str
+    above: float | None = None
+    least: float | None = None
+    absent: str = "not given"
+    metavar: str | None = None
+    main: bool = False
+    off: bool = False
+
+    @property
+    def field(self) -> str:
+        """Name of the field that holds the value, as messages name it."""
+        return self.path.rpartition(".")[2]
+
+    def value(self, request: Request) -> Any:
+        """Value of the option in a request."""
+        holder, _, name = self.path.rpartition(".")
+        return getattr(getattr(request, holder) if holder else request, name)
+
+    def shown(self, request: Request) -> str:
+        """Value of the option in a request, in words."""
+        value = self.value(request)
+        return self.absent if value is None else self.kind.show(value)
+
+
+DESIGN = (
+    Option("--height", "scale.height_mm", _MM, "Full height of the object, mm.", above=0.0),
+    Option("--width", "scale.width_mm", _MM, "Full width of the object, mm.", above=0.0),
+    Option("--mm-per-px", "scale.mm_per_px", _RATIO, "Millimetres per pixel.", above=0.0),
+    Option(
+        "--marker-mm", "scale.marker_mm", _MM,
+        "Side of an ArUco DICT_4X4_50 marker in the picture, mm.", above=0.0,
+    ),
+    Option(
+        "--camera-distance", "scale.camera_distance_mm", _MM,
+        "From the lens to the marker's or printed sheet's plane, mm: parallax.", above=0.0,
+    ),
+    Option("--box", "look.box", _pixels(4), "The object lies in this box, px.", metavar="X,Y,W,H"),
+    Option("--point", "look.point", _pixels(2), "A point inside the object, px.", metavar="X,Y"),
+    Option(
+        "--mask", "look.mask", _FILE,
+        "The object in white on black, a picture of the same size.",
+    ),
+    Option(
+        "--rotate", "look.rotate", _TURN,
+        "Turn the object, deg counter-clockwise; auto: its axis upright.", metavar="auto|DEG",
+    ),
+    Option("--symmetric", "look.symmetric", _YES, "Take the mean of the object's two sides."),
+    Option("--side", "side", _choice("left", "right"), "Side of the object to follow.", main=True),
+    Option(
+        "--from", "start_pct", _PERCENT, "Start of the stretch, % of that side from the top.",
+        main=True,
+    ),
+    Option("--to", "end_pct", _PERCENT, "End of the stretch, %.", main=True),
+    Option("--clearance", "clearance_mm", _MM, "Gap between tube and object, mm.", least=0.0),
+    Option(
+        "--diameter", "tube.outer_diameter_mm", _MM,
+        "Outer diameter of the tube, mm (default: the formula's, 20).", above=0.0, main=True,
+    ),
+    Option(
+        "--wall", "tube.wall_mm", _MM, "Wall of the tube, mm (default: the formula's, 2).",
+        above=0.0, main=True,
+    ),
+    Option(
+        "--root", "tube.root_mm", _ROOT,
+        "Least clamped length before the first joint's centre, mm.", above=0.0,
+    ),
+    Option(
+        "--pitch", "tube.pitch_mm", _MM, "Mesh pitch of the gauze, mm.", above=0.0, main=True
+    ),
+    Option(
+        "--max-pressure", "tube.max_pressure_bar", _BAR, "Highest pressure, bar.", above=0.0,
+        main=True,
+    ),
+    Option("--max-length", "tube.max_length_mm", _MM, "Longest tube, mm.", above=0.0, main=True),
+    Option(
+        "--formula", "formula", _FILE, "A formula file, or by name paper (default) or fe.",
+        absent="paper",
+    ),
+    Option(
+        "--extrapolate", "extrapolate", _YES,
+        "Let the formula be used some way beyond what it was fitted on, with a warning.",
+    ),
+    Option(
+        "--method", "method", _choice("optimal", "paper"),
+        "How joints are chosen: all at once, or one by one as the paper does.", main=True,
+    ),
+    Option(
+        "--joints", "joints", _COUNT, "Number of joints (default: as few as reach --tolerance).",
+        least=1, absent="as few as will do", main=True,
+    ),
+    Option(
+        "--tolerance", "tolerance_mm", _MM,
+        "How far the shape may lie off the profile, mm: RMS (default: joints are added "
+        "down to 0.25 by the joint response, and 1 % of the length will do), or for --method "
+        "paper the polygon of joints at most (default: 1).",
+        above=0.0, absent="the method's", main=True,
+    ),
+    Option(
+        "--interference", "interference_mm", _MM,
+        "How deep the tube may lie in the object, mm (optimal).", least=0.0,
+    ),
+    Option(
+        "--base-free", "base_free", _YES,
+        "Let the base leave the profile's start tangent (optimal).",
+    ),
+    Option(
+        "--alpha-step", "alpha_step_deg", _DEG,
+        "Step of alpha, deg (default: one thread; 0: any; optimal).", least=0.0,
+        absent="one thread",
+    ),
+    Option(
+        "--place-step", "place_step_mm", _MM, "Step of the joints' places, mm (0: any; optimal).",
+        least=0.0,
+    ),
+    Option(
+        "--verify", "verify", _YES, "Run finite elements of the whole actuator: some seconds.",
+        main=True, off=True,
+    ),
+    Option(
+        "--refine", "refine", _YES,
+        "Let finite elements correct the design (optimal; needs verify).", main=True,
+        off=True,
+    ),
+)  # fmt: skip
+# Fields of other records and commands that messages name.
+_OTHERS = {
+    "kerf_mm": "--kerf", "out": "--out", "force": "--force", "pressure_bar": "--pressure",
+    "alpha_center_deg": "--alpha-center", "base": "--from", "runs": "--runs",
+    "scheduler": "--scheduler", "workers": "--workers", "alpha_deg": "--alpha",
+    "openF_mm": "--openF", "theta_deg": "--theta",
+}  # fmt: skip
+FLAGS: Mapping[str, str] = {**{row.field: row.flag for row in DESIGN}, **_OTHERS}
+
+
+def in_flags(text: str) -> str:
+    """Name the fields of a message by the flags of the command line."""
+    return re.sub(r"`(\w+)`", lambda found: FLAGS.get(found[1], found[0]), text)

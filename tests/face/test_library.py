@@ -1,0 +1,129 @@
+"""Designs from Python: files, arrays and profiles, as a notebook makes them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from profiletool import (
+    Drawing,
+    Profile,
+    Request,
+    design,
+    files_of,
+    find_subject,
+    load_design,
+    plan_joints,
+    verify_design,
+)
+from profiletool.errors import NoObject, NoScale, UnreadableInput, UsageError
+from profiletool.pipeline import Result
+
+T = np.linspace(0.0, 2.0 * np.pi, 400, endpoint=False)
+EGG = np.column_stack([30.0 * np.cos(T) * (1.0 - 0.15 * np.sin(T)), 42.0 * np.sin(T)])
+
+
+@pytest.fixture(scope="module")
+def made(samples: Path) -> Result:
+    return design(samples / "egg.png", verify=False)
+
+
+def test_a_file_by_its_name_gives_what_the_command_gives(made: Result, samples: Path) -> None:
+    assert not made.design.verified
+    assert made.design.source.file == "egg.png"
+    again = design(str(samples / "egg.png"), verify=False, side="left", joints=None)
+    assert again.design == made.design
+    request = Request(samples / "egg.png", verify=False)
+    assert design(request).design == made.design
+    with pytest.raises(UsageError, match="a request holds all options"):
+        design(request, side="right")
+
+
+def test_a_picture_as_an_array_is_the_same_picture(made: Result, samples: Path) -> None:
+    with Image.open(samples / "egg.png") as image:
+        rgba = np.array(image.convert("RGBA"))
+    mm_per_px = made.design.source.mm_per_px
+    given = design(rgba, mm_per_px=mm_per_px, verify=False)
+    assert given.design.joints == made.design.joints
+    assert given.design.source.file == "picture"
+    assert given.design.source.sha256 != made.design.source.sha256
+    with pytest.raises(NoScale):
+        design(rgba, verify=False)
+    darker = rgba.copy()
+    darker[0, 0, 0] ^= 1
+    other = find_subject(darker, mm_per_px=mm_per_px)
+    assert other.profile.length_mm == pytest.approx(made.subject.profile.length_mm, abs=0.01)
+
+
+def test_points_are_a_drawn_line() -> None:
+    closed = find_subject(np.vstack([EGG, EGG[:1]]), side="right").profile
+    assert closed.side == "right"
+    assert closed.outline is not None
+    assert closed.length_mm == pytest.approx(115.0, abs=12.0)
+    open_ = find_subject(EGG[100:300]).profile
+    assert open_.outline is None
+    drawing = find_subject(Drawing(EGG, closed=True), side="right").profile
+    assert drawing.length_mm == pytest.approx(closed.length_mm, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("array", "error", "says"),
+    [
+        (np.zeros((4, 5, 7), np.uint8), UsageError, "an array is a picture"),
+        (np.zeros((40, 50, 3)), UsageError, "float64"),
+        (np.full((9, 2), np.nan), UnreadableInput, "not finite"),
+        (np.zeros((2, 2)), UnreadableInput, "points"),
+        (np.array([[0, 0], [9, 9], [9, 0], [0, 9.0]]), NoObject, "crosses"),
+    ],
+)
+def test_arrays_that_are_neither(array: np.ndarray, error: type[Exception], says: str) -> None:
+    with pytest.raises(error, match=says):
+        design(array)
+
+
+def test_the_steps_one_by_one(made: Result, samples: Path) -> None:
+    profile = find_subject(samples / "egg.png").profile
+    assert isinstance(profile, Profile)
+    plan = plan_joints(profile)
+    assert plan.layout == made.plan.layout
+    other = design(profile, verify=False)
+    assert other.design.joints == made.design.joints
+    assert other.design.source.side == "left"
+    assert plan_joints(profile, method="paper").by == "formula"
+    mirrored = find_subject(samples / "egg.png", side="right").profile
+    assert design(mirrored, verify=False).design.source.side == "right"
+
+
+def test_files_as_bytes(made: Result, tmp_path: Path) -> None:
+    files = files_of(made)
+    assert files["overlay.png"].startswith(b"\x89PNG")
+    (tmp_path / "design.json").write_bytes(files["design.json"])
+    read = load_design(tmp_path / "design.json")
+    assert len(read.joints) == len(made.design.joints)
+
+
+def test_a_wrong_option_is_named() -> None:
+    with pytest.raises(UsageError, match="'heigth_mm' is no option of a design"):
+        design("egg.png", heigth_mm=90)
+
+
+@pytest.mark.slow
+def test_a_joint_changed_by_hand_is_verified_anew(made: Result) -> None:
+    profile = made.subject.profile
+    first, *others = made.design.joints
+    changed = replace(made.design, joints=(replace(first, alpha_closed_deg=150.0), *others))
+    check = verify_design(changed, profile)
+    assert check.failure is None
+    assert check.design.verified
+    assert check.design.joints[0].theta_formula_deg < first.theta_formula_deg
+    assert check.design.fit.fe is not None
+    assert made.design.fit.fe is None
+    assert check.shape is not None
+    moved = replace(made.design, joints=(replace(first, centre_mm=first.centre_mm - 1.0), *others))
+    again = verify_design(moved, profile.points).design
+    assert again.tube.root_mm == first.centre_mm - 1.0
+    assert again.joints[0].F_mm == pytest.approx(first.F_mm + 1.0)
