@@ -12,7 +12,7 @@ from sphinx.util import logging
 from sphinx.writers.html5 import HTML5Translator
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from profiletool.records.version import VERSION  # noqa: E402
+from profiletool.records.version import VERSION
 
 _PROJECT = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text())["project"]
 
