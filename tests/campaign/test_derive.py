@@ -13,7 +13,7 @@ import pytest
 from fem.material import PAPER_RUBBER, MooneyRivlin
 from formula.files import load_formula, parse_formula
 from formula.theta import theta_deg
-from profiletool.campaign.derive import Base, Plan, check_plan, derive, load_base, similar
+from profiletool.campaign.derive import Base, CampaignPlan, check_plan, derive, load_base, similar
 from profiletool.campaign.formula_file import formula_file
 from profiletool.campaign.runs import Outcome, Task
 from profiletool.errors import NotVerified, UnreadableInput, UsageError
@@ -21,7 +21,7 @@ from profiletool.report.derivation import derivation_files, derivation_text
 from profiletool.rubber.presets import PRESETS, Rubber
 
 PAPER = load_formula()
-PLAN = Plan(
+PLAN = CampaignPlan(
     diameter_mm=20.0,
     wall_mm=2.0,
     rubber=PRESETS["paper"],
