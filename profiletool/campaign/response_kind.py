@@ -14,7 +14,7 @@ from profiletool.campaign.kind import RunKind
 from profiletool.campaign.response_fit import BASE, SIGN, Lines
 from profiletool.campaign.response_tasks import PLUG_MM, ResponseTask
 from profiletool.records.units import BAR_PER_MPA
-from profiletool.verify.run import inflate
+from profiletool.verify.run import inflate, reason
 
 SCHEMA = "profiletool.response_run/1"  # to be raised where `run` reads other numbers off a solution
 _CHAIN, _LINES = ("centre", "openF", "alpha", "sense"), ("pressure", "along", "facing", "far")
@@ -39,8 +39,7 @@ def run(task: ResponseTask) -> Lines:
             pressures = reached if len(reached) < len(pressures) else pressures[:-1]
             if not pressures:
                 return _no_lines(task, ended)
-    if found.critical is not None:
-        ended = f"{found.critical.kind} at {found.critical.pressure_bar:.2f} bar"
+    ended = reason(found) or ended
     shapes = [state.shape for state in found.states]
     if not shapes:
         return _no_lines(task, ended)

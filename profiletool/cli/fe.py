@@ -201,10 +201,10 @@ def _end(found: Verification) -> None:
     ------
     NotVerified
     """
-    if found.critical is not None:
-        from profiletool.verify.run import said
+    if not found.converged:
+        from profiletool.verify.run import reason
 
         raise NotVerified(
-            f"{said(found.critical)}, before the {found.asked_bar:.2f} bar asked for; "
+            f"{reason(found)}, before the {found.asked_bar:.2f} bar asked for; "
             "ask for less with --pressure"
         )

@@ -39,6 +39,7 @@ def fe_json(found: Verification, more: Mapping[str, Any] | None = None) -> str:
         "air_ml": [round(s.air_ml, 3) for s in states],
         "largest_stretch": round(found.last.largest_stretch, 3),
         "thread_N": round(found.last.thread_N, 2),
+        **({} if found.failure is None else {"failure": found.failure}),
         **(more or {}),
     }
     return json.dumps(tree, allow_nan=False) + "\n"

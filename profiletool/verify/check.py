@@ -11,7 +11,7 @@ from profiletool.joints.misfit import misfit_to
 from profiletool.records.design import Design
 from profiletool.records.frames import Shape
 from profiletool.records.units import FloatArray
-from profiletool.verify.run import Progress, Run, run_design, said, shortly
+from profiletool.verify.run import Progress, Run, reason, run_design, shortly
 
 DECIMALS = 4  # of what FE puts into design.json: far above the noise of the last bits
 
@@ -53,8 +53,8 @@ def check(design: Design, target: FloatArray, progress: Progress | None = None) 
     except BadGeometry as error:
         return Check(design, None, f"cannot be modelled: {error}")
     found = run.verification
-    if found.critical is not None:
-        return Check(design, run, said(found.critical))
+    if found.critical is not None or found.failure is not None:
+        return Check(design, run, reason(found))
     by_joint = zip(design.joints, found.last.theta_deg, found.last.joint_stretch, strict=True)
     joints = tuple(
         replace(

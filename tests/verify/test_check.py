@@ -156,7 +156,7 @@ def test_a_thicker_gauze_gives_more_stiffness(samples: Path) -> None:
 def test_a_verified_design(samples: Path, run: Run) -> None:
     design = short(samples)
     facing = run.verification.last.shape.facing
-    done = check(design, along(facing))
+    done = check(design, along(facing).points)
     assert done.failure is None
     assert done.design.verified is True
     (joint,) = done.design.joints
@@ -164,12 +164,12 @@ def test_a_verified_design(samples: Path, run: Run) -> None:
     assert done.design.fit.fe is not None
     assert done.design.fit.fe.max_mm < 0.01
     assert done.design.fit.formula == design.fit.formula
-    assert check(design, along(facing)).design == done.design
+    assert check(design, along(facing).points).design == done.design
 
 
 def test_the_fit_is_in_the_designs_own_pose(samples: Path, run: Run) -> None:
     facing = run.verification.last.shape.facing
-    moved = check(short(samples), along(facing + np.array([0.0, 1.0]))).design.fit.fe
+    moved = check(short(samples), along(facing + np.array([0.0, 1.0])).points).design.fit.fe
     assert moved is not None
     assert 0.8 < moved.rms_mm <= moved.max_mm <= 1.01
 
@@ -181,11 +181,31 @@ def test_a_design_that_does_not_converge(
         raise NotConverged("residual at 0.500 bar", (), 0.04)
 
     monkeypatch.setattr("profiletool.verify.run.solve", fails)
-    done = check(short(samples), along(run.verification.rest.shape.facing))
+    done = check(short(samples), along(run.verification.rest.shape.facing).points)
     assert done.design == short(samples)
     assert done.run is None
     assert done.shape is None
     assert done.failure == "no equilibrium found beyond 0.40 bar"
+
+
+def test_states_that_were_reached_are_kept_where_a_run_does_not_converge(
+    samples: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(*_: object, **__: object) -> None:
+        part = replace(run.solution, states=run.solution.states[:4])
+        raise NotConverged("residual at 0.300 bar", (), 0.024, part)
+
+    monkeypatch.setattr("profiletool.verify.run.solve", fails)
+    done = check(short(samples), run.verification.rest.shape.facing)
+    assert done.failure == "no equilibrium found beyond 0.24 bar"
+    assert not done.design.verified
+    assert done.shape is None
+    assert done.run is not None
+    found = done.run.verification
+    assert not found.converged
+    assert found.critical is None
+    assert found.failure == done.failure
+    assert found.theta_deg[0] == run.verification.theta_deg[0][:3]
 
 
 def test_a_limit_point_before_the_operating_pressure(
@@ -193,7 +213,7 @@ def test_a_limit_point_before_the_operating_pressure(
 ) -> None:
     ended = fem.Critical("limit point", 0.05)
     changed(monkeypatch, lambda s: replace(s, states=s.states[:-3], critical=ended))
-    done = check(short(samples), along(run.verification.rest.shape.facing))
+    done = check(short(samples), along(run.verification.rest.shape.facing).points)
     assert done.failure == "limit point at 0.50 bar"
     assert done.design.verified is False
     assert done.design.joints[0].theta_fe_deg is None
@@ -207,7 +227,7 @@ def test_a_limit_point_before_the_operating_pressure(
 def test_a_design_that_cannot_be_modelled(samples: Path, run: Run) -> None:
     design = short(samples)
     thick = replace(design, tube=replace(design.tube, wall_mm=8.0))
-    done = check(thick, along(run.verification.rest.shape.facing))
+    done = check(thick, along(run.verification.rest.shape.facing).points)
     assert done.failure is not None
     assert done.failure.startswith("cannot be modelled: a wall of 8 mm")
 
