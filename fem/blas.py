@@ -99,7 +99,7 @@ def subtract_gram(C: FloatArray, B: FloatArray) -> None:
 @cache
 def _thread_switches() -> tuple[tuple[Any, Any], ...]:
     """Getter and setter of the thread count of every OpenBLAS that numpy and scipy brought."""
-    found = []
+    switches = []
     for package in (np, scipy):
         home = Path(str(package.__file__)).parent
         for folder in (home.parent / f"{package.__name__}.libs", home / ".dylibs"):
@@ -111,8 +111,8 @@ def _thread_switches() -> tuple[tuple[Any, Any], ...]:
                         get = getattr(library, name % "get", None)
                         put = getattr(library, name % "set", None)
                         if get is not None and put is not None:
-                            found.append((get, put))
-    return tuple(found)
+                            switches.append((get, put))
+    return tuple(switches)
 
 
 class _Hold:
