@@ -3,7 +3,9 @@
 numpy lets go of the interpreter's lock in products; scipy's wrappers of Cholesky and triangular
 solves do not, so these are called through the pointers that scipy exports (see the
 documentation of scipy.linalg.cython_blas). At the sizes of one cross-section BLAS's own threads
-make the whole several times slower; they are held to one while a solver works.
+make the whole several times slower; they are held to one while a solver works. (threadpoolctl
+3.8 is no help there: with OpenBLAS only the thread that first set the count may change it, so that
+of two solvers in two threads the one that ends last could not give the count back.)
 """
 
 from __future__ import annotations
