@@ -1,4 +1,4 @@
-"""What the report is made from."""
+"""The dossier: everything that the report tells, gathered from a result."""
 
 from __future__ import annotations
 
@@ -66,16 +66,16 @@ class Dossier:
 
 
 def dossier_of(result: Result, scene: Scene, template_svg: str) -> Dossier:
-    """Gather what the report tells."""
+    """Gather what the report tells; the scene and the template are those of the other files."""
     return Dossier(
-        scene,
-        result.shape,
-        result.check,
-        result.reasons,
-        formula_marks(result.design),
-        result.plan.trade_off,
-        template_svg,
-        options_of(result.request),
+        scene=scene,
+        by_formula=result.shape,
+        check=result.check,
+        reasons=result.reasons,
+        marks=formula_marks(result.design),
+        trade_off=result.plan.trade_off,
+        template_svg=template_svg,
+        options=options_of(result.request),
     )
 
 
