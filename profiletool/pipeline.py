@@ -123,7 +123,7 @@ def _verified(
 
 
 def _judged(attempt: Attempt) -> Result:
-    """Say whether the design can be built, and what its user should know."""
+    """Add the verdict: reasons against the design, notes for its user, sensitivities."""
     misses = misses_of(attempt)
     reasons = reasons_of(attempt, misses)
     notes = notes_of(attempt, reasons, misses)

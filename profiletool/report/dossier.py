@@ -19,7 +19,7 @@ from profiletool.verify.check import Check
 
 @dataclass(frozen=True)
 class Dossier:
-    """All that the report tells.
+    """Everything that the report tells.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class Dossier:
 
     @property
     def found(self) -> Verification | None:
-        """What finite elements say, where they were run."""
+        """Results of finite elements; None where they were not run."""
         run = None if self.check is None else self.check.run
         return None if run is None else run.verification
 
@@ -80,7 +80,7 @@ def dossier_of(result: Result, scene: Scene, template_svg: str) -> Dossier:
 
 
 def formula_marks(design: Design) -> tuple[Mark, ...]:
-    """Give the formula's angles to compare with."""
+    """Angles by the formula at the operating pressure, to compare with those of FE."""
     angles = [joint.sense * joint.theta_formula_deg for joint in design.joints]
     label = f"formula, {design.pressure_bar:.2f} bar"
     return (Mark(label, design.pressure_bar, angles),)
