@@ -1,4 +1,4 @@
-"""A run for the joint response: an actuator to its lines, the key they are kept under, the file."""
+"""Runs for the joint response: from an actuator to its lines, with keys and files."""
 
 from __future__ import annotations
 

@@ -97,8 +97,7 @@ def finger(
         typer.echo(told if as_json else text, nl=False)
         if out is not None:
             title = "the paper's finger"
-            files = outputs.fe_files(run, title, told)
-            files |= outputs.trajectory_files(found, title)
+            files = outputs.fe_files(run, title, told, trajectories=True)
             write.write_folder(out, files, force)
             speaker(quiet)(f"written: {out}")
         _end(found)

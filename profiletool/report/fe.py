@@ -1,4 +1,4 @@
-"""What finite elements say, as text, as JSON and as CSV."""
+"""Results of finite elements as text, as JSON and as CSV."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FINGER_RANGE_DEG = (75.0, 100.0, 65.0)  # of the paper's finger, below 2.0 bar
 
 
 def fe_json(found: Verification, more: Mapping[str, Any] | None = None) -> str:
-    """Write a verification as one line of JSON, then whatever ``more`` there is to say."""
+    """Write a verification as one line of JSON; the entries of ``more`` come last."""
     states = found.states
     ended = found.critical
     tree = {
@@ -82,7 +82,18 @@ def fe_text(found: Verification) -> str:
 def compared_text(
     design: Design, found: Verification, off: Misfit | None, target: str | None
 ) -> str:
-    """Say what FE finds beside what was wanted, and how far it lies off the target."""
+    """Lay out FE's angles beside the wanted ones, and the distance off the target.
+
+    Parameters
+    ----------
+    design : Design
+    found : Verification
+        Its last state is compared where it is at the design's pressure.
+    off : Misfit or None
+        None where there is no target.
+    target : str or None
+        Name of the file that the target was taken from.
+    """
     last = found.last
     lines = []
     if abs(last.pressure_bar - design.pressure_bar) < 1e-6:
@@ -103,7 +114,7 @@ def compared_text(
 
 
 def misfit_json(off: Misfit | None, target: str | None) -> dict[str, Any]:
-    """Give the distance to the target as JSON has it."""
+    """Make the entry `fit` of fe.json: distances to the target of a file, null without one."""
     if off is None:
         return {"fit": None}
     return {
@@ -112,7 +123,7 @@ def misfit_json(off: Misfit | None, target: str | None) -> dict[str, Any]:
 
 
 def ranges_text(found: Verification) -> str:
-    """Say at which pressure each joint of the finger reaches the paper's range."""
+    """Lay out the pressures at which the finger's joints reach the paper's ranges."""
     lines = []
     for k, (angle, bar) in enumerate(zip(FINGER_RANGE_DEG, _reached(found), strict=True)):
         said = "not reached" if bar is None else f"reached at {bar:.2f} bar"
@@ -121,7 +132,7 @@ def ranges_text(found: Verification) -> str:
 
 
 def ranges_json(found: Verification) -> dict[str, Any]:
-    """Give the same as JSON has it."""
+    """Make the entries of fe.json for the paper's ranges, deg, and the pressures, bar."""
     bars = [None if bar is None else round(bar, 3) for bar in _reached(found)]
     return {"range_deg": list(FINGER_RANGE_DEG), "range_reached_bar": bars}
 

@@ -1,4 +1,4 @@
-"""The tables of the report: joints, what the tube bears, sensitivity, and where all comes from."""
+"""The tables of the report: joints, loads on the tube, sensitivity, and the design's origin."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _NOTHING = "–"
 
 @dataclass(frozen=True)
 class Option:
-    """What was asked for by one option of the command, and what it is where it is not given."""
+    """An option of the command: its value, and the value where it is not given."""
 
     name: str
     value: str
@@ -86,7 +86,7 @@ def pressure_table(design: Design, found: Verification) -> Markup:
 
 
 def loads(state: FeState, design: Design) -> Markup:
-    """Tell what a state of finite elements asks of rubber, gauze and air supply."""
+    """Tabulate the demands of a state of finite elements on rubber, gauze and air supply."""
     stretches = list(zip(design.joints, state.joint_stretch, strict=True))
     worst, _ = max(stretches, key=lambda pair: pair[1])
     rows = [
@@ -118,7 +118,7 @@ def sensitivity_table(design: Design) -> Markup:
 
 
 def threads_uncut(joint: Joint, design: Design) -> str:
-    """Say how many axial threads a joint keeps around the tube."""
+    """Count the axial threads that a joint keeps around the tube, in words."""
     width = pi * design.tube.outer_diameter_mm * joint.alpha_closed_deg / 360.0
     return short(width / design.gauze.pitch_mm)
 
@@ -134,7 +134,7 @@ def _seen(source: Source) -> Iterator[tuple[str, str]]:
 
 
 def provenance(design: Design, found: Verification | None, options: Sequence[Option]) -> Markup:
-    """Tell what the design was made from, and how."""
+    """Tabulate what the design was made from, and how; ``options`` are those asked for."""
     source, formula = design.source, design.formula
     scale = "in mm already" if source.mm_per_px is None else scale_text(source, digits=6)
     rows: list[tuple[str, str]] = [
