@@ -19,11 +19,11 @@ from pathlib import Path
 
 import numpy as np
 
-from fem.actuator import AWAY, TOWARD, Actuator, Window
+from fem.actuator import Actuator, Window
 from fem.errors import NotConverged
 from fem.material import PAPER_RUBBER
 from fem.meshsize import DEFAULT_MESH
-from profiletool.bending.model import Chain
+from profiletool.bending.model import Chain, centers_of
 from profiletool.bending.response import Response
 from profiletool.campaign.response_fit import (
     BASE,
@@ -67,7 +67,7 @@ def plan(
 ) -> Plan:
     """Plan a run of joints (centre mm, openF mm, alpha deg, sense)."""
     centre, openF, alpha, sense = np.array(joints, dtype=float).reshape(-1, 4).T
-    return Plan(name, Chain(centre, openF, np.radians(alpha), sense, length), pressures)
+    return Plan(name, Chain(centre, openF, np.radians(alpha), centers_of(sense), length), pressures)
 
 
 def singles() -> list[Plan]:
@@ -114,8 +114,8 @@ def run(plan: Plan) -> Lines | None:
     """Run finite elements, as far as they go; None where they do not even begin."""
     chain = plan.chain
     windows = tuple(
-        Window(float(c), float(o), float(a), float(TOWARD if s > 0.0 else AWAY))
-        for c, o, a, s in zip(chain.centre, chain.openF, chain.alpha, chain.sense, strict=True)
+        Window(*(float(number) for number in joint))
+        for joint in zip(chain.centre, chain.openF, chain.alpha, chain.alpha_center, strict=True)
     )
     actuator = Actuator(chain.length, windows, plug=PLUG_MM)
     pressures, ended = plan.pressures, None
