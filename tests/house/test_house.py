@@ -17,7 +17,6 @@ LONG_FUNCTIONS = {
     "profiletool/campaign/workers.py:run_all",
     "profiletool/cli/derive.py:derive",
     "profiletool/cli/design.py:design",
-    "profiletool/joints/optimal_method.py:optimal_plan",
     "profiletool/verify/run.py:inflate",
 }
 # Commands have a parameter for each option.
@@ -27,7 +26,7 @@ COMMANDS = {
     "profiletool/cli/fe.py:joint",
     "profiletool/cli/template.py:template",
 }
-WIDE_FUNCTIONS = {"profiletool/joints/optimal/edges.py:_near"}
+WIDE_FUNCTIONS: set[str] = set()
 
 
 @pytest.fixture(scope="module")
