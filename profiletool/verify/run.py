@@ -90,9 +90,10 @@ def inflate(
     try:
         solution = solve(actuator, asked, threads=threads, progress=told)
     except NotConverged as error:
-        if error.solution is None or len(error.solution.states) < 2:
+        part = error.solution
+        if not isinstance(part, Solution) or len(part.states) < 2:
             raise
-        solution, failure = error.solution, shortly(error)
+        solution, failure = part, shortly(error)
     place = Placement(pose, sign, actuator.radius)
     found = _verification(solution, max(pressures_bar), place, thread_pitch_mm)
     return Run(replace(found, failure=failure), solution)
