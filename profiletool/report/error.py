@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from profiletool.joints.misfit import feet, target_points
+from profiletool.joints.closest import closest_points, target_points
 from profiletool.records.design import Fit, Misfit
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
@@ -44,7 +44,7 @@ def gap_along(shape: Shape, profile: Profile) -> tuple[FloatArray, FloatArray]:
     """
     points = target_points(profile)
     s = np.linspace(0.0, profile.length_mm, len(points))
-    return s, feet(shape.facing, points, profile.sign).gap
+    return s, closest_points(shape.facing, points, profile.sign).distance
 
 
 def error_figure(scene: Scene, by_formula: Shape, title: str = "") -> Figure:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from profiletool.bending.model import Model
 from profiletool.joints.bounds import cuts_of, wrap_mm
-from profiletool.joints.misfit import STEP_MM, feet, target_points
+from profiletool.joints.closest import STEP_MM, closest_points, target_points
 from profiletool.joints.optimal.bends import tabulate
 from profiletool.joints.optimal.choose import Choice
 from profiletool.records.profile import Profile
@@ -82,8 +82,7 @@ def missed(
     say = place or (lambda s: f"{s:.0f} mm down the profile")
     points = target_points(profile)
     s = np.linspace(0.0, profile.length_mm, len(points))
-    found = feet(choice.shape.facing, points, profile.sign)
-    off = np.abs(found.gap)
+    off = np.abs(closest_points(choice.shape.facing, points, profile.sign).distance)
     most = choice.limits.pressure[1]
     radii = {sense: tightest_radius(model, material, most, sense) for sense in _SENSES}
     tip = np.hypot(*(points - choice.shape.facing[-1]).T)

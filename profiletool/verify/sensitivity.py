@@ -8,7 +8,7 @@ import numpy as np
 
 from fem.errors import FemError
 from fem.sensitivity import Rate, sensitivities
-from profiletool.joints.misfit import feet, target_points
+from profiletool.joints.closest import closest_points, target_points
 from profiletool.records.design import Design, Sensitivity
 from profiletool.records.frames import base_axes
 from profiletool.records.profile import Profile
@@ -40,11 +40,11 @@ def sensitivity_of(design: Design, run: Run, profile: Profile) -> tuple[Sensitiv
     sign = side_sign(design.source.side)
     axes = base_axes(float(np.radians(design.base_pose.heading_deg)), sign)
     points = target_points(profile)
-    found = feet(shape.facing, points, sign)
+    closest = closest_points(shape.facing, points, sign)
 
     def off(rate: Rate, amount: float) -> FloatArray:
         motion = placed_motion(rate, shape, solution.mesh, axes)
-        moved: FloatArray = amount * np.einsum("mk,mk->m", found.normal, found.at(motion))
+        moved: FloatArray = amount * np.einsum("mk,mk->m", closest.normal, closest.at(motion))
         return moved
 
     def worst(what: str, some: Sequence[Rate], amount: float) -> Iterator[Sensitivity]:
@@ -56,7 +56,7 @@ def sensitivity_of(design: Design, run: Run, profile: Profile) -> tuple[Sensitiv
     wall = _WALL_SHARE * design.tube.wall_mm
     scale = design.source.scale_error_share or _SCALE_SHARE
     # What lies off the start grows with the scale.
-    grown = scale * np.einsum("mk,mk->m", found.normal, points - points[0])
+    grown = scale * np.einsum("mk,mk->m", closest.normal, points - points[0])
     return (
         _told(
             f"pressure {_PRESSURE_BAR:g} bar off",

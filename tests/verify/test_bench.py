@@ -13,9 +13,9 @@ from fem.errors import BadGeometry, NotConverged
 from fem.solution import Solution
 from profiletool.bending.response import Response
 from profiletool.joints.bounds import Limits
+from profiletool.joints.closest import closest_points, distance_jacobian
 from profiletool.joints.correction.correct import CannotBend, Steps, Trial, correct
 from profiletool.joints.correction.parameters import Parameters
-from profiletool.joints.misfit import feet, residual_jacobian
 from profiletool.profile.curve import arc_length
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
@@ -43,7 +43,7 @@ MISSED = (0.01, 0.03, 0.12, 0.07, 0.01, 0.001, 0.001)
 
 def trial_at(vector: FloatArray, bench: FeBench, near: Trial[Solution] | None) -> Trial[Solution]:
     shape, state = bench.bend(NUMBERS.unpack(vector), NUMBERS.sign, near)
-    return Trial(NUMBERS, vector, shape, feet(shape.facing, shape.facing, 1.0), state)
+    return Trial(NUMBERS, vector, shape, closest_points(shape.facing, shape.facing, 1.0), state)
 
 
 @pytest.fixture(scope="module")
@@ -62,12 +62,12 @@ def beside(shape: Shape, off_mm: float = 0.7) -> FloatArray:
 def test_motion_against_differences(bent: Trial[Solution]) -> None:
     bench = FeBench(TubeSpec())
     points = beside(bent.shape)
-    jacobian = residual_jacobian(feet(bent.shape.facing, points, 1.0), bench.motion(bent))
+    jacobian = distance_jacobian(closest_points(bent.shape.facing, points, 1.0), bench.motion(bent))
     assert jacobian.shape == (len(points), len(NAMES))
     for k, (name, scale, most) in enumerate(zip(NAMES, NUMBERS.scale(), MISSED, strict=True)):
         step = 0.1 * scale * np.eye(len(NAMES))[k]
         ahead, behind = (
-            feet(trial_at(VECTOR + by, bench, bent).shape.facing, points, 1.0).gap
+            closest_points(trial_at(VECTOR + by, bench, bent).shape.facing, points, 1.0).distance
             for by in (step, -step)
         )
         slope = (ahead - behind) / (2.0 * step[k])
@@ -105,7 +105,7 @@ def test_a_target_made_by_fe_is_reached(bent: Trial[Solution]) -> None:
         Steps(0.0, 0.0, 0.0), 0.3, said.append,
     )  # fmt: skip
     assert found.rms_mm[0] > 0.3
-    assert np.sqrt(np.mean(found.best.feet.gap[:-3] ** 2)) < 0.1
+    assert np.sqrt(np.mean(found.best.closest.distance[:-3] ** 2)) < 0.1
     assert len(found.rms_mm) == len(said) <= 6
     # The state is one of the actuator that is handed back.
     alone, _ = FeBench(TubeSpec()).bend(found.best.actuator, 1.0, None)

@@ -14,10 +14,16 @@ from typing import Generic, Protocol, TypeVar
 import numpy as np
 
 from profiletool.bending.model import Model
+from profiletool.joints.closest import (
+    ClosestPoints,
+    closest_points,
+    distance_jacobian,
+    target_points,
+)
 from profiletool.joints.correction.parameters import Actuator, Parameters, facing_motion
 from profiletool.joints.correction.steps import Linear
 from profiletool.joints.correction.surrogate import Known
-from profiletool.joints.misfit import Feet, badness, feet, residual_jacobian, target_points
+from profiletool.joints.misfit import Deviation, objective_of
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
 from profiletool.records.units import BAR_PER_MPA, FloatArray
@@ -26,7 +32,7 @@ S = TypeVar("S")
 
 _SHORTEST = 0.1  # share of a step's reach below which it gives up
 _MOST_FREE, _MOST_BUILT = 5, 5
-_WORTH = 0.8  # of the badness: a step that promises less is not taken
+_WORTH = 0.8  # of the cost: a step that promises less is not taken
 _ENOUGH_MM = 0.3  # RMS of a shape whose numbers will be rounded: rounding costs as much
 _SPARE_MM = 1.0  # how far the tube goes on beyond the profile's end
 
@@ -42,12 +48,12 @@ class Steps:
 
 @dataclass(frozen=True)
 class Trial(Generic[S]):
-    """A vector with the shape that it bends to, its feet on the profile, and the bench's state."""
+    """A vector, the shape that it bends to, its closest points, and the bench's state."""
 
     parameters: Parameters
     vector: FloatArray
     shape: Shape
-    feet: Feet
+    closest: ClosestPoints
     state: S
 
     @property
@@ -156,7 +162,7 @@ class _Loop(Generic[S]):
         say: Callable[[str], None],
     ) -> None:
         self._bench, self._model = bench, model
-        self._interference, self._say = interference_mm, say
+        self._objective, self._say = objective_of(interference_mm), say
         self._points = target_points(profile)
         self.rms: list[float] = []
 
@@ -164,14 +170,14 @@ class _Loop(Generic[S]):
         """Take free steps as long as they pay and the shape is farther off than is enough."""
         share, known = 1.0, None
         for _ in range(_MOST_FREE):
-            if self._worth(best) < enough_mm**2:
+            if self._cost(best) < enough_mm**2:
                 break
             known = known or self._known(best)
             target, promised = known.free(share)
-            if promised > _WORTH * self._worth(best):
+            if promised > _WORTH * self._cost(best):
                 break
             trial = self._tried(best, target, "all numbers free")
-            if trial is not None and self._worth(trial) < self._worth(best):
+            if trial is not None and self._cost(trial) < self._cost(best):
                 best, known = trial, None
             else:
                 share *= 0.4
@@ -189,21 +195,21 @@ class _Loop(Generic[S]):
             target, promised = known.built(_step_sizes(best.vector, best.parameters, steps))
             if any(np.allclose(target, other, atol=1e-9) for other in tried):
                 break
-            if found is not None and promised > _WORTH * self._worth(found):
+            if found is not None and promised > _WORTH * self._cost(found):
                 break
             tried.append(target)
             trial = self._tried(best, target, "in steps that can be built")
             if trial is None:
                 break
-            if found is None or self._worth(trial) < self._worth(found):
+            if found is None or self._cost(trial) < self._cost(found):
                 best = found = trial
                 known = self._known(best)
             else:
-                known = known.taught(target, trial.feet.gap)
+                known = known.broyden_update(target, trial.closest.distance)
         return best if found is None else found
 
-    def _worth(self, trial: Trial[S]) -> float:
-        return float(badness(trial.feet.gap, self._interference))
+    def _cost(self, trial: Trial[S]) -> float:
+        return float(self._objective.cost(Deviation(trial.closest.distance)))
 
     def _tried(self, near: Trial[S], vector: FloatArray, what: str) -> Trial[S] | None:
         try:
@@ -218,25 +224,25 @@ class _Loop(Generic[S]):
         """Bend the actuator of a vector and lay it onto the profile."""
         at = parameters.unpack(vector)
         shape, state = self._bench.bend(at, parameters.sign, near)
-        found = feet(shape.facing, self._points, parameters.sign)
-        self.rms.append(float(np.sqrt(np.mean(found.gap**2))))
+        closest = closest_points(shape.facing, self._points, parameters.sign)
+        self.rms.append(float(np.sqrt(np.mean(closest.distance**2))))
         self._say(
-            f"{what}: {self.rms[-1]:.2f} mm RMS, {np.abs(found.gap).max():.2f} at most, "
+            f"{what}: {self.rms[-1]:.2f} mm RMS, {np.abs(closest.distance).max():.2f} at most, "
             f"at {BAR_PER_MPA * at.pressure:.3f} bar"
         )
-        return Trial(parameters, vector, shape, found, state)
+        return Trial(parameters, vector, shape, closest, state)
 
     def _known(self, trial: Trial[S]) -> Known:
         low, high = trial.parameters.bounds()
         linear = Linear(
-            gap=trial.feet.gap,
-            jacobian=residual_jacobian(trial.feet, self._bench.motion(trial)),
+            distance=trial.closest.distance,
+            jacobian=distance_jacobian(trial.closest, self._bench.motion(trial)),
             vector=trial.vector,
             centre=trial.vector,
             low=low,
             high=high,
             scale=trial.parameters.scale(),
-            interference_mm=self._interference,
+            objective=self._objective,
         )
         return Known(linear, trial.parameters, self._model, self._points)
 
@@ -251,12 +257,12 @@ def _step_sizes(vector: FloatArray, parameters: Parameters, steps: Steps) -> Flo
 
 def _end(trial: Trial[S]) -> float:
     """Give the wrapped length at the closed end that just reaches the profile's end."""
-    found, facing = trial.feet, trial.shape.facing
-    first, share = int(found.first[-1]), float(found.share[-1])
+    closest, facing = trial.closest, trial.shape.facing
+    first, share = int(closest.first[-1]), float(closest.share[-1])
     left = np.hypot(*np.diff(facing[first:], axis=0).T)
     beyond = float(left.sum() - share * left[0])
     missing = 0.0
     if first == len(facing) - 2 and share >= 1.0:
-        missing = abs(float(found.gap[-1]))
+        missing = abs(float(closest.distance[-1]))
     end = trial.parameters.end_mm + missing + _SPARE_MM - beyond
     return float(np.ceil(end))

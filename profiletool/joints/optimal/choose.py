@@ -15,6 +15,7 @@ from profiletool.bending.model import Chain, Model
 from profiletool.errors import Infeasible, NoObject
 from profiletool.joints.bounds import Limits, cuts_of, limits_of
 from profiletool.joints.correction.parameters import Actuator
+from profiletool.joints.misfit import is_good, score
 from profiletool.joints.optimal.lines import Discretisation
 from profiletool.joints.optimal.polish import Goal, Polished, at_bound, goal_of, judge, polish
 from profiletool.joints.optimal.search import MOST_JOINTS, Found, search
@@ -26,7 +27,6 @@ from profiletool.records.request import INTERFERENCE_MM, TubeSpec
 from profiletool.records.units import BAR_PER_MPA, FloatArray
 
 TOLERANCE_MM = 0.25
-DEPTH_SLACK_MM = 0.1  # beyond the interference, that nobody can see
 
 FINE = Discretisation()
 # Where no line on the profile will do: bridges over corners and hollows.
@@ -228,7 +228,8 @@ def _fewest(
         if near:
             best[n] = _best_of(found, model, goal, n, _RIVALS)
         polished[n - 1] = best[n].misfit.rms_mm
-        if near and good(best[n], wish):
+        good = is_good(best[n].misfit, best[n].depth, wish.tolerance_mm, wish.interference_mm)
+        if near and good:
             return best[n], polished
     chosen = min(best, key=lambda n: _score(best[n], goal) + worth * n)
     full = _best_of(found, model, goal, chosen, _RIVALS)
@@ -242,15 +243,8 @@ def _known(rms: FloatArray, count: int) -> int:
     return int(known[-1]) + 1 if known.size else count
 
 
-def good(found: Polished, wish: Wish) -> bool:
-    """Whether a shape is as good as asked for."""
-    deep = found.depth > wish.interference_mm + DEPTH_SLACK_MM
-    return found.misfit.rms_mm <= wish.tolerance_mm and not deep
-
-
-def _score(found: Polished, goal: Goal) -> float:
-    """RMS, and a share of what lies too deep, mm."""
-    return found.misfit.rms_mm + 0.1 * max(found.depth - goal.interference, 0.0)
+def _score(polished: Polished, goal: Goal) -> float:
+    return score(polished.misfit, polished.depth, goal.interference)
 
 
 def _best_of(

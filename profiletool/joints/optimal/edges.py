@@ -15,13 +15,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from profiletool.joints.misfit import Float32, depth_cost
+from profiletool.joints.misfit import LENGTH_COST_MM2, Deviation, Objective
 from profiletool.joints.optimal.bends import STEP_MM, Bends
 from profiletool.joints.optimal.lines import IntArray, Lines
 from profiletool.records.units import FloatArray
 
-BoolArray = NDArray[np.bool_]
-_LENGTH_WEIGHT = 1e-3  # mm² for a mm of tube: of equal shapes the shortest
+Float32 = NDArray[np.float32]
 _BACK_MM = 30.0  # a first vertex may lie so far behind the profile's start
 
 
@@ -75,9 +74,9 @@ class Priced:
     cut: NDArray[np.intp]
 
 
-def summed_cost(lines: Lines, interference: float) -> FloatArray:
+def summed_cost(lines: Lines, objective: Objective) -> FloatArray:
     """Cost of a line at all points up to each: (N, M + 1)."""
-    cost = depth_cost(lines.out.astype(np.float32), interference) * lines.weight
+    cost = objective.density(Deviation(-lines.out.astype(np.float32))) * lines.weight
     total = np.zeros((cost.shape[0], cost.shape[1] + 1))
     np.cumsum(cost, axis=1, out=total[:, 1:])
     return total
@@ -88,7 +87,7 @@ def edges_of(
     sense: float,
     bends: Sequence[Bends],
     wrap_mm: float,
-    interference: float,
+    objective: Objective,
     most_cost: float,
 ) -> Edges:
     """Find all pairs of lines that a joint may join at some pressure.
@@ -102,11 +101,11 @@ def edges_of(
         Of this sense, at all pressures.
     wrap_mm : float
         Least wrapped length between two windows: half of it on either side of a place.
-    interference : float, mm
+    objective : Objective
     most_cost : float, mm³
         Edges that alone cost more are left out.
     """
-    summed = summed_cost(lines, interference)
+    summed = summed_cost(lines, objective)
     start, end, turn = _turning(lines, sense, bends)
     before, after = _vertex(lines, start, end, sense * turn)
     least = np.where(start < lines.base, -_BACK_MM, 0.5 * wrap_mm)
@@ -182,7 +181,12 @@ def _near(
 
 
 def price(
-    edges: Edges, lines: Lines, bends: Bends, openF: FloatArray, wrap_mm: float, interference: float
+    edges: Edges,
+    lines: Lines,
+    bends: Bends,
+    openF: FloatArray,
+    wrap_mm: float,
+    objective: Objective,
 ) -> Priced:
     """Find the cheapest joint of every edge at the pressure of ``bends``."""
     cost = np.full(len(edges.turn), np.inf)
@@ -207,11 +211,12 @@ def price(
         at = np.rint((edges.at[fits] + np.float32(bends.before)) * np.float32(1.0 / STEP_MM))
         index = np.clip(at, 0, places - 1).astype(np.int32) + angle[:, None] * places
         bulge = bends.bulge[k].ravel().take(index) * share[:, None].astype(np.float32)
-        slope = bends.slope[k].ravel().take(index)
-        depth = (edges.near[fits] + sense * bulge) * slope
-        near = np.einsum("ez,ez->e", depth_cost(depth, interference), edges.weight[fits])
+        # What lies off the line away from the object is at a negative distance of the tube.
+        slope = (-bends.slope[k]).ravel().take(index)
+        at_points = Deviation((edges.near[fits] + sense * bulge) * slope)
+        near = np.einsum("ez,ez->e", objective.density(at_points), edges.weight[fits])
         tube = edges.before[fits] + edges.after[fits] - 2.0 * reach + length
-        total = edges.straight[fits] + near + _LENGTH_WEIGHT * tube
+        total = edges.straight[fits] + near + LENGTH_COST_MM2 * tube
         better = total < cost[fits]
         cost[fits[better]] = total[better]
         cut[fits[better]] = k

@@ -8,29 +8,25 @@ import numpy as np
 
 from profiletool.bending.model import Chain, Model
 from profiletool.joints.bounds import Limits
+from profiletool.joints.closest import (
+    ClosestPoints,
+    closest_points,
+    distance_jacobian,
+    target_points,
+)
 from profiletool.joints.correction.parameters import (
     Actuator,
     Parameters,
     facing_motion,
     parameters_of,
 )
-from profiletool.joints.misfit import (
-    DEPTH_WEIGHT,
-    Feet,
-    depth_inside,
-    feet,
-    misfit,
-    residual_jacobian,
-    target_points,
-)
+from profiletool.joints.misfit import Deviation, depth_inside, misfit, objective_of
 from profiletool.joints.optimal.descent import descend
 from profiletool.records.design import Misfit
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
 
-_TOO_LONG = 1.0  # weight of a mm of tube beyond the longest, against one of gap
-_LENGTH = 0.01  # and of any other: of equal shapes the shortest
 _SPARE_MM = 20.0  # straight end that reaches past the profile's while the rest is moved
 _BOUND_SHARE = 1e-3  # of a range: so near is at the bound
 
@@ -74,10 +70,9 @@ def goal_of(profile: Profile, limits: Limits, interference: float) -> Goal:
 
 
 def polish(actuator: Actuator, model: Model, goal: Goal, runs: int = 12) -> Polished:
-    """Move alpha, wrapped lengths, pressure and base until the gaps are least.
+    """Move alpha, wrapped lengths, pressure and base until the objective is least.
 
-    Deep places count more (`edges.DEPTH_WEIGHT`), and so does a tube that is too long. The
-    straight end is cut where the profile ends.
+    See `profiletool.joints.misfit.objective_of`. The straight end is cut where the profile ends.
 
     Parameters
     ----------
@@ -140,36 +135,35 @@ class _Problem:
 
     def __init__(self, parameters: Parameters, model: Model, goal: Goal) -> None:
         self._parameters, self._model, self._goal = parameters, model, goal
-        self._last: tuple[FloatArray, Shape, Feet] | None = None
+        self._objective = objective_of(goal.interference, goal.limits.max_length_mm)
+        self._last: tuple[FloatArray, Shape, ClosestPoints] | None = None
 
     def residuals(self, vector: FloatArray) -> FloatArray:
-        _, found = self._bent(vector)
-        deep = np.maximum(-found.gap - self._goal.interference, 0.0)
-        length = self._least_length(vector)
-        long = max(length - self._goal.limits.max_length_mm, 0.0)
-        return np.concatenate(
-            [found.gap, np.sqrt(DEPTH_WEIGHT) * deep, [_TOO_LONG * long, _LENGTH * length]]
-        )
+        _, closest = self._bent(vector)
+        at = Deviation(closest.distance, length=self._least_length(vector))
+        return self._objective.residuals(at)
 
     def jacobian(self, vector: FloatArray) -> FloatArray:
-        shape, found = self._bent(vector)
+        shape, closest = self._bent(vector)
         motion = facing_motion(self._parameters, self._model, vector, shape)
-        gap = residual_jacobian(found, motion)
-        deep = -np.sqrt(DEPTH_WEIGHT) * gap * (found.gap < -self._goal.interference)[:, None]
         n = self._parameters.joints
-        tube = np.zeros((2, len(vector)))
-        tube[1, n : 2 * n - 1] = _LENGTH
-        if self._least_length(vector) > self._goal.limits.max_length_mm:
-            tube[0, n : 2 * n - 1] = _TOO_LONG
-        return np.concatenate([gap, deep, tube])
+        longer = np.zeros(len(vector))
+        longer[n : 2 * n - 1] = 1.0  # by the wrapped lengths
+        at = Deviation(
+            closest.distance,
+            distance_jacobian(closest, motion),
+            self._least_length(vector),
+            longer,
+        )
+        return self._objective.jacobian(at)
 
-    def _bent(self, vector: FloatArray) -> tuple[Shape, Feet]:
+    def _bent(self, vector: FloatArray) -> tuple[Shape, ClosestPoints]:
         if self._last is None or not np.array_equal(self._last[0], vector):
             at = self._parameters.unpack(vector)
             sign = self._parameters.sign
             shape = self._model.shape(at.chain, at.pressure, at.pose, sign)
-            found = feet(shape.facing, self._goal.points, sign)
-            self._last = (vector.copy(), shape, found)
+            closest = closest_points(shape.facing, self._goal.points, sign)
+            self._last = (vector.copy(), shape, closest)
         return self._last[1], self._last[2]
 
     def _least_length(self, vector: FloatArray) -> float:

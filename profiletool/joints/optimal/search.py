@@ -13,6 +13,7 @@ import numpy as np
 from profiletool.bending.model import Chain, Model
 from profiletool.joints.bounds import Limits
 from profiletool.joints.correction.parameters import Actuator
+from profiletool.joints.misfit import Objective, objective_of
 from profiletool.joints.optimal.bends import Bends, tabulate
 from profiletool.joints.optimal.edges import Edges, Priced, edges_of, price, summed_cost
 from profiletool.joints.optimal.lines import Discretisation, IntArray, Lines, lines_of
@@ -62,12 +63,12 @@ class Found:
     totals: tuple[FloatArray, ...]
     cost: FloatArray
     most_cost: float
-    interference: float
+    objective: Objective
 
     def path(self, pressure: int, joints: int) -> tuple[Step, ...]:
         """Walk back the best path of so many joints at a pressure (an index)."""
         totals, priced = self.totals[pressure], self.priced[pressure]
-        line = int(np.argmin(totals[joints] + _tails(self.lines, self.interference)))
+        line = int(np.argmin(totals[joints] + _tails(self.lines, self.objective)))
         steps: list[Step] = []
         for n in range(joints, 0, -1):
             best, step = np.inf, None
@@ -147,24 +148,24 @@ def search(
     grid : Discretisation
     most_joints : int
     """
-    lines = lines_of(profile, limits, grid)
+    lines, objective = lines_of(profile, limits, grid), objective_of(interference)
     pressure = _pressures(limits, grid)
     bends = [[tabulate(model, float(P), openF, sense) for sense in (1.0, -1.0)] for P in pressure]
     most = _FIRST_MOST_MM**2 * profile.length_mm
     for attempt in range(_WIDENED):
         senses = [
-            edges_of(lines, sense, [of[k] for of in bends], limits.wrap_mm, interference, most)
+            edges_of(lines, sense, [of[k] for of in bends], limits.wrap_mm, objective, most)
             for k, sense in enumerate((1.0, -1.0))
         ]
         priced, totals = [], []
         for of in bends:
             prices = [
-                price(edges, lines, table, openF, limits.wrap_mm, interference)
+                price(edges, lines, table, openF, limits.wrap_mm, objective)
                 for edges, table in zip(senses, of, strict=True)
             ]
             priced.append(tuple(prices))
             totals.append(_totals(lines, senses, prices, most_joints))
-        tail = _tails(lines, interference)
+        tail = _tails(lines, objective)
         cost = np.array([(total[1:] + tail).min(axis=1) for total in totals])
         if cost.min() <= most or attempt == _WIDENED - 1:
             break
@@ -179,7 +180,7 @@ def search(
         tuple(totals),
         cost,
         most,
-        interference,
+        objective,
     )
 
 
@@ -191,9 +192,9 @@ def _pressures(limits: Limits, grid: Discretisation) -> FloatArray:
     return high - grid.pressure_step * np.arange(count, dtype=float)[::-1]
 
 
-def _tails(lines: Lines, interference: float) -> FloatArray:
+def _tails(lines: Lines, objective: Objective) -> FloatArray:
     """Cost of going straight on from every line's place: (N,)."""
-    summed = summed_cost(lines, interference)
+    summed = summed_cost(lines, objective)
     return summed[:, -1] - summed[np.arange(len(lines.place)), lines.place + 1]
 
 

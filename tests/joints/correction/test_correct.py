@@ -13,6 +13,7 @@ from profiletool.bending.kinematics import Bend, deform
 from profiletool.bending.model import Chain, Model
 from profiletool.bending.response import Response
 from profiletool.joints.bounds import Limits
+from profiletool.joints.closest import closest_points
 from profiletool.joints.correction.correct import (
     Bench,
     CannotBend,
@@ -23,7 +24,6 @@ from profiletool.joints.correction.correct import (
     correct,
 )
 from profiletool.joints.correction.parameters import Actuator, Parameters
-from profiletool.joints.misfit import feet
 from profiletool.profile.curve import arc_length
 from profiletool.records.frames import Pose, Shape
 from profiletool.records.profile import Profile
@@ -87,7 +87,7 @@ END = 3  # points: the tube's end follows the trial before, and may be a millime
 
 
 def rms(found: Corrected[None]) -> float:
-    return float(np.sqrt(np.mean(found.best.feet.gap[:-END] ** 2)))
+    return float(np.sqrt(np.mean(found.best.closest.distance[:-END] ** 2)))
 
 
 @pytest.mark.parametrize("side", ["left", "right"])
@@ -100,7 +100,7 @@ def test_a_known_actuator_is_found_back(by: str, side: str) -> None:
     found = corrected(ModelBench(model), model, target, said=said)
     assert found.rms_mm[0] > 0.8
     assert rms(found) < NEAR_MM
-    assert np.sqrt(np.mean(found.best.feet.gap**2)) == pytest.approx(min(found.rms_mm))
+    assert np.sqrt(np.mean(found.best.closest.distance**2)) == pytest.approx(min(found.rms_mm))
     assert len(said) == len(found.rms_mm) <= 7
     at, true = found.best.actuator, numbers(sign).unpack(TRUE)
     turns = [np.degrees(model.theta(a.chain.openF, a.chain.alpha, a.pressure)) for a in (at, true)]
@@ -143,8 +143,8 @@ def test_what_can_be_built_is_whole_and_nearly_as_good(by: str) -> None:
     for some, step in ((naive[:3], 0.2), (naive[3:6], 1.0), (naive[6:], 0.001)):
         some[:] = np.round(some / step) * step
     points = target.points[::5]
-    rounded = feet(bent(model, numbers(), naive).facing, points, 1.0).gap
-    best = feet(found.best.shape.facing, points, 1.0).gap
+    rounded = closest_points(bent(model, numbers(), naive).facing, points, 1.0).distance
+    best = closest_points(found.best.shape.facing, points, 1.0).distance
     assert np.sqrt(np.mean(best**2)) < 0.7 * np.sqrt(np.mean(rounded**2))
     low, high = found.best.parameters.bounds()
     assert ((vector >= low - 1e-9) & (vector <= high + 1e-9)).all()
