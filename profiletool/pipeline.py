@@ -27,8 +27,8 @@ from profiletool.verdict.missed import Missed
 from profiletool.verdict.notes import notes_of
 from profiletool.verdict.reasons import misses_of, reasons_of
 from profiletool.verdict.summary import headline, summary
-from profiletool.verify.bench import FeBench
 from profiletool.verify.check import Check, check
+from profiletool.verify.forward import FeForwardModel
 from profiletool.verify.run import Progress
 from profiletool.verify.sensitivity import sensitivity_of
 
@@ -113,8 +113,8 @@ def _attempt(
 ) -> Attempt:
     profile, material = subject.profile, request.tube
     if request.method == "optimal":
-        bench = FeBench(material) if request.verify and request.refine else None
-        plan = optimal_plan(request, profile, formula, say, bench)
+        forward = FeForwardModel(material) if request.verify and request.refine else None
+        plan = optimal_plan(request, profile, formula, say, forward)
     else:
         plan = paper_plan(request, profile, formula, say)
     layout = plan.layout

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from profiletool.bending.model import Chain
 from profiletool.bending.neighbours import PLUG_MM
-from profiletool.bending.response_table import Table, shipped
+from profiletool.bending.response_table import ResponseTable, shipped
 from profiletool.records.frames import Pose, Shape
 from profiletool.records.units import FloatArray
 
@@ -36,12 +36,12 @@ class Response:
 
     Attributes
     ----------
-    table : Table
+    table : ResponseTable
     length_scale, pressure_scale : float
         Of this tube over the tabulated one.
     """
 
-    table: Table
+    table: ResponseTable
     length_scale: float = 1.0
     pressure_scale: float = 1.0
 

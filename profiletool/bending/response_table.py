@@ -69,7 +69,7 @@ class Axis:
 
 
 @dataclass(frozen=True)
-class Table:
+class ResponseTable:
     """What finite elements say of single joints in a long tube.
 
     Attributes
@@ -157,7 +157,7 @@ class Table:
         )
 
     @classmethod
-    def read(cls, file: IO[bytes]) -> Table:
+    def read(cls, file: IO[bytes]) -> ResponseTable:
         """Read what `save` wrote."""
         with np.load(file, allow_pickle=False) as kept:
             values = {name: kept[name] for name in kept.files}
@@ -182,7 +182,7 @@ class Table:
 
 
 @cache
-def shipped() -> Table:
+def shipped() -> ResponseTable:
     """Read the table that comes with the package, once."""
     with resources.files("profiletool.bending").joinpath(FILE).open("rb") as file:
-        return Table.read(file)
+        return ResponseTable.read(file)

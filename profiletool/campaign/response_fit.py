@@ -25,7 +25,7 @@ from profiletool.bending.neighbours import (
     log_factors,
 )
 from profiletool.bending.response import Response
-from profiletool.bending.response_table import Axis, Table
+from profiletool.bending.response_table import Axis, ResponseTable
 from profiletool.records.frames import Pose, Shape
 from profiletool.records.units import FloatArray
 
@@ -105,7 +105,7 @@ def fields(lines: Lines) -> FloatArray:
     return np.stack([turn, *summed, np.hypot(across[..., 0], across[..., 1])], axis=1)
 
 
-def tabulate(singles: Sequence[Lines], straight: Lines, tube: FloatArray) -> Table:
+def tabulate(singles: Sequence[Lines], straight: Lines, tube: FloatArray) -> ResponseTable:
     """Build a table without neighbours' influence.
 
     Parameters
@@ -132,7 +132,7 @@ def tabulate(singles: Sequence[Lines], straight: Lines, tube: FloatArray) -> Tab
             halves[i, j] = _half(grid[a, o], wrapped, tube[0])
     theta = 2.0 * halves[:, :, :, 0, -1]
     coarse = slice(len(pressure) % 2 == 0, None, 2)
-    return Table(
+    return ResponseTable(
         alpha=Axis.through(alpha),
         openF=Axis.through(openF),
         pressure=Axis.through(pressure),
@@ -272,6 +272,6 @@ def check(runs: Sequence[Lines], response: Response) -> Error:
     return Error(np.array(rms), np.array(worst))
 
 
-def with_about(table: Table, about: dict[str, Any]) -> Table:
+def with_about(table: ResponseTable, about: dict[str, Any]) -> ResponseTable:
     """Write down where a table comes from."""
     return replace(table, about={**table.about, **about})

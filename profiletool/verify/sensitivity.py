@@ -14,8 +14,8 @@ from profiletool.records.frames import base_axes
 from profiletool.records.profile import Profile
 from profiletool.records.side import side_sign
 from profiletool.records.units import BAR_PER_MPA, FloatArray
-from profiletool.verify.bench import placed_motion
 from profiletool.verify.check import DECIMALS
+from profiletool.verify.forward import placed_motion
 from profiletool.verify.run import Run
 
 _PRESSURE_BAR, _WALL_SHARE, _OPENF_MM, _PLACE_MM, _SCALE_SHARE = 0.05, 0.05, 2.0, 1.0, 0.01
@@ -49,7 +49,7 @@ def sensitivity_of(design: Design, run: Run, profile: Profile) -> tuple[Sensitiv
 
     def worst(what: str, some: Sequence[Rate], amount: float) -> Iterator[Sensitivity]:
         moved = [off(rate, amount) for rate in some]
-        k = int(np.argmax([np.mean(gap**2) for gap in moved]))
+        k = int(np.argmax([np.mean(one**2) for one in moved]))
         yield _told(what, k + 1, moved[k])
 
     thread = 2.0 * design.gauze.pitch_mm / design.tube.outer_diameter_mm
@@ -71,6 +71,6 @@ def sensitivity_of(design: Design, run: Run, profile: Profile) -> tuple[Sensitiv
     )
 
 
-def _told(what: str, joint: int | None, gap: FloatArray) -> Sensitivity:
-    rms, most = float(np.sqrt(np.mean(gap**2))), float(np.abs(gap).max())
+def _told(what: str, joint: int | None, moved: FloatArray) -> Sensitivity:
+    rms, most = float(np.sqrt(np.mean(moved**2))), float(np.abs(moved).max())
     return Sensitivity(what, joint, round(rms, DECIMALS - 2), round(most, DECIMALS - 2))

@@ -516,7 +516,7 @@ def never_converging(monkeypatch: pytest.MonkeyPatch) -> None:
     def fails(*_: object, **__: object) -> None:
         raise NotConverged("inverted at 0.010 bar", (), 0.001)
 
-    for module in ("run", "bench"):
+    for module in ("run", "forward"):
         monkeypatch.setattr(f"profiletool.verify.{module}.solve", fails)
 
 

@@ -13,7 +13,7 @@ from formula.files import load_formula
 from profiletool.bending.constant_curvature import FormulaModel
 from profiletool.joints import misfit
 from profiletool.joints.bounds import cuts_of, limits_of
-from profiletool.joints.correction.parameters import Actuator, parameters_of
+from profiletool.joints.correction.parameters import PosedChain, parameters_of
 from profiletool.joints.correction.steps import Linear, free_step
 from profiletool.joints.misfit import Deviation, Objective, Term, is_good, objective_of, score
 from profiletool.joints.optimal.lines import Discretisation
@@ -110,10 +110,10 @@ def test_a_term_added_in_one_place_counts_for_all_who_ask(
     limits, cuts = limits_of(MODEL, material), cuts_of(MODEL, material)
     grid = Discretisation(6.0, (0.0,), (0.0, 1.0), 0.1, 0.16)
 
-    def searched() -> Actuator:
+    def searched() -> PosedChain:
         found = search(profile, MODEL, cuts, limits, 0.3, grid, 3)
         pressure = int(np.argmin(found.cost[:, 2]))
-        return found.actuator(pressure, 3, MODEL, profile, limits)
+        return found.posed_chain(pressure, 3, MODEL, profile, limits)
 
     def mean_distance(objective: Objective) -> float:
         linear = Linear(

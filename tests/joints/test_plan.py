@@ -15,8 +15,8 @@ from profiletool.bending.model import Chain
 from profiletool.bending.response import Response
 from profiletool.errors import UsageError
 from profiletool.files.design_json import load_design
-from profiletool.joints.correction.correct import CannotBend, ModelBench, Trial
-from profiletool.joints.correction.parameters import Actuator
+from profiletool.joints.correction.correct import BendingForwardModel, CannotBend, Iterate
+from profiletool.joints.correction.parameters import PosedChain
 from profiletool.joints.optimal_method import angles, optimal_plan
 from profiletool.pipeline import Request, Result, run
 from profiletool.records.design import Design, Fit, Misfit
@@ -143,16 +143,18 @@ def test_less_pressure_than_joints_are_known_for(request_: Request) -> None:
         run(weak, silent)
 
 
-class Bursting(ModelBench):
+class Bursting(BendingForwardModel):
     """Finite elements for which no tube stands 1.4 bar."""
 
     def __init__(self) -> None:
         super().__init__(Response.load())
 
-    def bend(self, actuator: Actuator, sign: float, near: Trial[None] | None) -> tuple[Shape, None]:
-        if actuator.pressure > 0.14:
+    def bend(
+        self, posed: PosedChain, sign: float, near: Iterate[None] | None
+    ) -> tuple[Shape, None]:
+        if posed.pressure > 0.14:
             raise CannotBend("limit point at 1.40 bar", 0.14)
-        return super().bend(actuator, sign, near)
+        return super().bend(posed, sign, near)
 
 
 def test_a_choice_that_does_not_stand_is_made_again_with_less_pressure(request_: Request) -> None:

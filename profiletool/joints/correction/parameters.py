@@ -1,11 +1,9 @@
-"""An actuator as a vector of numbers to be fitted, and its residuals against a profile.
+"""Parameters of an actuator: the vector of the numbers that are fitted to a profile.
 
 Glossary
 --------
 n : number of joints
 place : where joint 1's centre lies along the base line, from the profile's start
-feet : the points of the object-facing line that are nearest to the profile's
-gap : what a residual is: distance, positive where the tube stands off the object, mm
 """
 
 from __future__ import annotations
@@ -24,7 +22,7 @@ PLACE_BACK_MM = 30.0  # joint 1 may lie this far before the profile's start
 
 
 @dataclass(frozen=True)
-class Actuator:
+class PosedChain:
     """A chain of joints under pressure, clamped in a pose; ``pressure`` in MPa."""
 
     chain: Chain
@@ -109,8 +107,8 @@ class Parameters:
         place = float(vector[2 * self.joints - 1])
         return self.root(place + 1e-6) > self.root(place)
 
-    def unpack(self, vector: FloatArray) -> Actuator:
-        """Build the actuator of a vector: (size,)."""
+    def unpack(self, vector: FloatArray) -> PosedChain:
+        """Build the posed chain of a vector: (size,)."""
         n = self.joints
         alpha, wrapped = vector[:n], vector[n : 2 * n - 1]
         place, pressure = (float(v) for v in vector[2 * n - 1 : 2 * n + 1])
@@ -127,11 +125,11 @@ class Parameters:
             self.start[1] + back * ty + float(offset) * ny,
             float(np.degrees(heading)),
         )
-        return Actuator(Chain(centre, self.openF, alpha, self.sense, length), pressure, pose)
+        return PosedChain(Chain(centre, self.openF, alpha, self.sense, length), pressure, pose)
 
-    def pack(self, actuator: Actuator) -> FloatArray:
-        """Give the vector of an actuator: (size,), the inverse of `unpack` but for the end."""
-        chain, pose = actuator.chain, actuator.pose
+    def pack(self, posed: PosedChain) -> FloatArray:
+        """Give the vector of a posed chain: (size,), the inverse of `unpack` but for the end."""
+        chain, pose = posed.chain, posed.pose
         heading = float(np.radians(pose.heading_deg))
         turn = self.sign * (heading - self.heading)
         turn = float(np.remainder(turn + np.pi, 2.0 * np.pi) - np.pi)
@@ -140,7 +138,7 @@ class Parameters:
         place = float(away @ along) + float(chain.centre[0])
         F = np.diff(chain.centre) - 0.5 * (self.openF[1:] + self.openF[:-1])
         base = [turn, float(away @ across)] * self.limits.base_free
-        return np.concatenate([chain.alpha, F, [place, actuator.pressure], base])
+        return np.concatenate([chain.alpha, F, [place, posed.pressure], base])
 
     def with_end(self, end_mm: float) -> Parameters:
         """Give the same with another wrapped length at the closed end."""

@@ -1,4 +1,4 @@
-"""What is known around an actuator that a bench has bent: a model that agrees with it there."""
+"""The surrogate of a forward model near an actuator that it has bent: it agrees with it there."""
 
 from __future__ import annotations
 
@@ -20,11 +20,22 @@ _ROUNDS = 5  # of a search
 
 
 @dataclass(frozen=True)
-class Known:
-    """What is known around a trial: its gaps and their derivatives, bent on by a model.
+class Surrogate:
+    """A forward model near one of its iterates, by a cheaper bending model.
 
-    The model's gaps are shifted so that they and their derivatives agree with the bench's at the
-    trial; what remains of the model is how the derivatives change from there.
+    The bending model's distances are shifted so that they and their derivatives agree with the
+    forward model's at the iterate; what remains of the bending model is how the derivatives change
+    from there.
+
+    Attributes
+    ----------
+    linear : Linear
+        Distances and derivatives at the iterate, by the forward model.
+    parameters : Parameters
+    model : Model
+        The bending model.
+    points : (M, 2) mm
+        Of the profile.
     """
 
     linear: Linear
@@ -44,7 +55,7 @@ class Known:
         reach = np.where(step > 0.5 * self.linear.scale, np.minimum(step, reach), reach)
         return self._sought(lambda linear: built_step(linear, step, reach))
 
-    def broyden_update(self, vector: FloatArray, distance: FloatArray) -> Known:
+    def broyden_update(self, vector: FloatArray, distance: FloatArray) -> Surrogate:
         """Correct the derivatives by the distances, (M,), that were found at another vector.
 
         The least change, counted in the numbers' scales, that makes them agree (Broyden 1965).

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from profiletool.joints.misfit import LENGTH_COST_MM2, Deviation, Objective
 from profiletool.joints.optimal.bends import STEP_MM, Bends
-from profiletool.joints.optimal.lines import IntArray, Lines
+from profiletool.joints.optimal.lines import CandidateLines, IntArray
 from profiletool.records.units import FloatArray
 
 Float32 = NDArray[np.float32]
@@ -74,7 +74,7 @@ class Priced:
     cut: NDArray[np.intp]
 
 
-def summed_cost(lines: Lines, objective: Objective) -> FloatArray:
+def summed_cost(lines: CandidateLines, objective: Objective) -> FloatArray:
     """Cost of a line at all points up to each: (N, M + 1)."""
     cost = objective.density(Deviation(-lines.out.astype(np.float32))) * lines.weight
     total = np.zeros((cost.shape[0], cost.shape[1] + 1))
@@ -83,7 +83,7 @@ def summed_cost(lines: Lines, objective: Objective) -> FloatArray:
 
 
 def edges_of(
-    lines: Lines,
+    lines: CandidateLines,
     sense: float,
     bends: Sequence[Bends],
     wrap_mm: float,
@@ -94,7 +94,7 @@ def edges_of(
 
     Parameters
     ----------
-    lines : Lines
+    lines : CandidateLines
     sense : float
         +1 for joints that bend toward the object.
     bends : sequence of Bends
@@ -129,7 +129,7 @@ def edges_of(
 
 
 def _turning(
-    lines: Lines, sense: float, bends: Sequence[Bends]
+    lines: CandidateLines, sense: float, bends: Sequence[Bends]
 ) -> tuple[IntArray, IntArray, FloatArray]:
     """Pairs of lines, one behind the other, whose headings differ by what a joint gives."""
     least = min((float(b.least.min()) for b in bends), default=np.inf)
@@ -141,7 +141,7 @@ def _turning(
 
 
 def _vertex(
-    lines: Lines, start: IntArray, end: IntArray, turn: FloatArray
+    lines: CandidateLines, start: IntArray, end: IntArray, turn: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Distance to the vertex from the place of the first line, and from it to the second's."""
     # The foot, on the second line, of the profile's point there, as the first line sees it.
@@ -154,7 +154,7 @@ def _vertex(
 
 
 def _near(
-    lines: Lines,
+    lines: CandidateLines,
     start: IntArray,
     end: IntArray,
     before: FloatArray,
@@ -182,7 +182,7 @@ def _near(
 
 def price(
     edges: Edges,
-    lines: Lines,
+    lines: CandidateLines,
     bends: Bends,
     openF: FloatArray,
     wrap_mm: float,

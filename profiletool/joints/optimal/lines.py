@@ -55,7 +55,7 @@ class Discretisation:
 
 
 @dataclass(frozen=True)
-class Lines:
+class CandidateLines:
     """All lines, and the profile's points as each of them sees them.
 
     Attributes
@@ -83,7 +83,7 @@ class Lines:
     base: int
 
 
-def lines_of(profile: Profile, limits: Limits, grid: Discretisation) -> Lines:
+def lines_of(profile: Profile, limits: Limits, grid: Discretisation) -> CandidateLines:
     """Lay the lines of a discretisation on a profile."""
     count = max(round(profile.length_mm / grid.step_mm), 2)
     step = profile.length_mm / count
@@ -105,7 +105,7 @@ def lines_of(profile: Profile, limits: Limits, grid: Discretisation) -> Lines:
     cos, sin = np.cos(direction)[:, None], np.sin(direction)[:, None]
     x, y = (points[None, :, k] - point[:, k, None] for k in (0, 1))
     along, out = cos * x + sin * y, profile.sign * (sin * x - cos * y)
-    return Lines(place, line_turn, point, along, out, weight, len(turns))
+    return CandidateLines(place, line_turn, point, along, out, weight, len(turns))
 
 
 def _fan(

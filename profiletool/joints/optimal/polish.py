@@ -15,8 +15,8 @@ from profiletool.joints.closest import (
     target_points,
 )
 from profiletool.joints.correction.parameters import (
-    Actuator,
     Parameters,
+    PosedChain,
     facing_motion,
     parameters_of,
 )
@@ -58,7 +58,7 @@ class Polished:
     ``depth`` is how deep it lies in the object at most, mm.
     """
 
-    actuator: Actuator
+    posed: PosedChain
     shape: Shape
     misfit: Misfit
     depth: float
@@ -69,14 +69,14 @@ def goal_of(profile: Profile, limits: Limits, interference: float) -> Goal:
     return Goal(profile, target_points(profile), limits, interference)
 
 
-def polish(actuator: Actuator, model: Model, goal: Goal, runs: int = 12) -> Polished:
+def polish(posed: PosedChain, model: Model, goal: Goal, runs: int = 12) -> Polished:
     """Move alpha, wrapped lengths, pressure and base until the objective is least.
 
     See `profiletool.joints.misfit.objective_of`. The straight end is cut where the profile ends.
 
     Parameters
     ----------
-    actuator : Actuator
+    posed : PosedChain
         Where to start.
     model : Model
     goal : Goal
@@ -84,13 +84,13 @@ def polish(actuator: Actuator, model: Model, goal: Goal, runs: int = 12) -> Poli
         Most evaluations of the shape and its derivatives.
     """
     profile = goal.profile
-    parameters = parameters_of(actuator.chain, profile, goal.limits)
+    parameters = parameters_of(posed.chain, profile, goal.limits)
     parameters = parameters.with_end(parameters.end_mm + _SPARE_MM)
     problem = _Problem(parameters, model, goal)
     found = descend(
         problem.residuals,
         problem.jacobian,
-        parameters.pack(actuator),
+        parameters.pack(posed),
         parameters.bounds(),
         parameters.scale(),
         runs,
@@ -99,34 +99,34 @@ def polish(actuator: Actuator, model: Model, goal: Goal, runs: int = 12) -> Poli
     return judge(cut_end(best, model, goal), model, goal)
 
 
-def cut_end(actuator: Actuator, model: Model, goal: Goal) -> Actuator:
+def cut_end(posed: PosedChain, model: Model, goal: Goal) -> PosedChain:
     """End the tube where the profile ends, as far as the limits allow."""
-    chain, limits, sign = actuator.chain, goal.limits, goal.profile.sign
+    chain, limits, sign = posed.chain, goal.limits, goal.profile.sign
     edge = float(chain.centre[-1] + 0.5 * chain.openF[-1])
     longest = max(chain.length, edge + limits.end_mm + _SPARE_MM)
     long = Chain(chain.centre, chain.openF, chain.alpha, chain.sense, longest)
-    shape = model.shape(long, actuator.pressure, actuator.pose, sign)
+    shape = model.shape(long, posed.pressure, posed.pose, sign)
     # Of the straight end only: the profile may come near the tube elsewhere.
     tip, before = shape.facing[-1], shape.facing[-2]
     along = (tip - before) / np.hypot(*(tip - before))
     reached = longest + float((goal.points[-1] - tip) @ along)
     length: float = max(min(reached, limits.max_length_mm), edge + limits.end_mm)
     chain = Chain(chain.centre, chain.openF, chain.alpha, chain.sense, length)
-    return Actuator(chain, actuator.pressure, actuator.pose)
+    return PosedChain(chain, posed.pressure, posed.pose)
 
 
-def judge(actuator: Actuator, model: Model, goal: Goal) -> Polished:
+def judge(posed: PosedChain, model: Model, goal: Goal) -> Polished:
     """Bend an actuator and measure it against the profile."""
-    shape = model.shape(actuator.chain, actuator.pressure, actuator.pose, goal.profile.sign)
+    shape = model.shape(posed.chain, posed.pressure, posed.pose, goal.profile.sign)
     fit = misfit(shape, goal.profile)
-    return Polished(actuator, shape, fit, depth_inside(shape, goal.profile))
+    return Polished(posed, shape, fit, depth_inside(shape, goal.profile))
 
 
-def at_bound(actuator: Actuator, limits: Limits) -> FloatArray:
+def at_bound(posed: PosedChain, limits: Limits) -> FloatArray:
     """Tell where alpha ends at a bound: -1 at the least, +1 at the largest, 0 elsewhere; (n,)."""
     low, high = limits.alpha
     near = _BOUND_SHARE * (high - low)
-    alpha = actuator.chain.alpha
+    alpha = posed.chain.alpha
     return np.where(alpha >= high - near, 1.0, 0.0) - np.where(alpha <= low + near, 1.0, 0.0)
 
 

@@ -12,11 +12,11 @@ import numpy as np
 
 from profiletool.bending.model import Chain, Model
 from profiletool.joints.bounds import Limits
-from profiletool.joints.correction.parameters import Actuator
+from profiletool.joints.correction.parameters import PosedChain
 from profiletool.joints.misfit import Objective, objective_of
 from profiletool.joints.optimal.bends import Bends, tabulate
 from profiletool.joints.optimal.edges import Edges, Priced, edges_of, price, summed_cost
-from profiletool.joints.optimal.lines import Discretisation, IntArray, Lines, lines_of
+from profiletool.joints.optimal.lines import CandidateLines, Discretisation, IntArray, lines_of
 from profiletool.records.frames import Pose, base_axes
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
@@ -28,7 +28,7 @@ _WIDENED = 3
 
 
 @dataclass(frozen=True)
-class Step:
+class PathJoint:
     """One joint of a path: the lines before and behind it."""
 
     sense: float
@@ -41,8 +41,8 @@ class Step:
 
 
 @dataclass(frozen=True)
-class Found:
-    """The least cost for every number of joints at every pressure, and what it takes to walk back.
+class SearchResult:
+    """The least cost for every number of joints at every pressure, and the way back along paths.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class Found:
         Costs below it are those of the optimum.
     """
 
-    lines: Lines
+    lines: CandidateLines
     senses: tuple[Edges, ...]
     pressure: FloatArray
     openF: FloatArray
@@ -65,11 +65,11 @@ class Found:
     most_cost: float
     objective: Objective
 
-    def path(self, pressure: int, joints: int) -> tuple[Step, ...]:
+    def path(self, pressure: int, joints: int) -> tuple[PathJoint, ...]:
         """Walk back the best path of so many joints at a pressure (an index)."""
         totals, priced = self.totals[pressure], self.priced[pressure]
         line = int(np.argmin(totals[joints] + _tails(self.lines, self.objective)))
-        steps: list[Step] = []
+        steps: list[PathJoint] = []
         for n in range(joints, 0, -1):
             best, step = np.inf, None
             for edges, prices in zip(self.senses, priced, strict=True):
@@ -77,7 +77,7 @@ class Found:
                 total = totals[n - 1][edges.start[low:high]] + prices.cost[low:high]
                 if high > low and total.min() < best:
                     best, e = float(total.min()), low + int(np.argmin(total))
-                    step = Step(
+                    step = PathJoint(
                         edges.sense,
                         int(edges.start[e]),
                         line,
@@ -91,9 +91,9 @@ class Found:
             line = step.start
         return tuple(steps[::-1])
 
-    def actuator(
+    def posed_chain(
         self, pressure: int, joints: int, model: Model, profile: Profile, limits: Limits
-    ) -> Actuator:
+    ) -> PosedChain:
         """Give the actuator of the best path; its end reaches as far as the profile's."""
         steps = self.path(pressure, joints)
         sense, turn, openF, before, after = (
@@ -122,7 +122,7 @@ class Found:
         along, _ = base_axes(heading, profile.sign)
         x, y = lines.point[steps[0].start] + (place - root) * along
         pose = Pose(float(x), float(y), float(np.degrees(heading)))
-        return Actuator(Chain(centre, openF, alpha, sense, length), P, pose)
+        return PosedChain(Chain(centre, openF, alpha, sense, length), P, pose)
 
 
 def search(
@@ -133,7 +133,7 @@ def search(
     interference: float,
     grid: Discretisation,
     most_joints: int,
-) -> Found:
+) -> SearchResult:
     """Find the least cost for 1 to ``most_joints`` joints at every pressure of a grid.
 
     Parameters
@@ -170,7 +170,7 @@ def search(
         if cost.min() <= most or attempt == _WIDENED - 1:
             break
         most *= _WIDEN
-    return Found(
+    return SearchResult(
         lines,
         tuple(senses),
         pressure,
@@ -192,14 +192,14 @@ def _pressures(limits: Limits, grid: Discretisation) -> FloatArray:
     return high - grid.pressure_step * np.arange(count, dtype=float)[::-1]
 
 
-def _tails(lines: Lines, objective: Objective) -> FloatArray:
+def _tails(lines: CandidateLines, objective: Objective) -> FloatArray:
     """Cost of going straight on from every line's place: (N,)."""
     summed = summed_cost(lines, objective)
     return summed[:, -1] - summed[np.arange(len(lines.place)), lines.place + 1]
 
 
 def _totals(
-    lines: Lines, senses: list[Edges], prices: list[Priced], most_joints: int
+    lines: CandidateLines, senses: list[Edges], prices: list[Priced], most_joints: int
 ) -> FloatArray:
     """Least cost of reaching every line with 0 to ``most_joints`` joints: (J + 1, N)."""
     count = len(lines.place)

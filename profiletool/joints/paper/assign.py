@@ -14,7 +14,7 @@ from formula.theta import Formula
 from profiletool.bending.kinematics import Bend, facing_stretch
 from profiletool.joints.bounds import END_WRAP_MM, wrap_mm
 from profiletool.joints.paper.pieces import Rules
-from profiletool.joints.paper.sectors import Sector
+from profiletool.joints.paper.sectors import BendingSector
 from profiletool.profile.offset import offset_points
 from profiletool.records.design import AWAY_DEG, TOWARD_DEG, Joint
 from profiletool.records.frames import Pose
@@ -85,7 +85,7 @@ def joint_rules(table: Table, material: TubeSpec, tolerance_mm: float) -> Rules:
 
 
 def lay_out(
-    profile: Profile, sectors: Sequence[Sector], table: Table, material: TubeSpec
+    profile: Profile, sectors: Sequence[BendingSector], table: Table, material: TubeSpec
 ) -> Layout:
     """Measure the sectors and look the angles up.
 
@@ -138,7 +138,9 @@ def _nearest_cuts(table: Table, openF: Sequence[float], wanted: Sequence[float])
     return cuts
 
 
-def _phalanges(profile: Profile, sectors: Sequence[Sector], material: TubeSpec) -> FloatArray:
+def _phalanges(
+    profile: Profile, sectors: Sequence[BendingSector], material: TubeSpec
+) -> FloatArray:
     """F of every joint by eq. (10), NS measured between points of the axis curve: (n,).
 
     Straight, as in the paper: "between the intersection points of the curved axis with the
@@ -166,12 +168,12 @@ def _phalanges(profile: Profile, sectors: Sequence[Sector], material: TubeSpec) 
     return F
 
 
-def _covered(sector: Sector, radius_mm: float) -> float:
+def _covered(sector: BendingSector, radius_mm: float) -> float:
     opening = float(facing_stretch(sector.turn_rad, radius_mm))
     return sector.openF_mm + max(opening, 0.0)
 
 
-def _base(profile: Profile, first: Sector, material: TubeSpec) -> tuple[float, Pose]:
+def _base(profile: Profile, first: BendingSector, material: TubeSpec) -> tuple[float, Pose]:
     """Root length and pose: straight along the first line, so that joint 1 lies on its vertex.
 
     The root is as long as asked, longer only where the profile starts with a longer straight or

@@ -192,6 +192,6 @@ def _deviation(
     outward, inward = (
         np.max(off, axis=1, where=within, initial=0.0) for off in (outside, -outside)
     )
-    gap = np.min(np.hypot(away[..., 0], away[..., 1]), axis=1, where=within, initial=np.inf)
-    outward = np.maximum(outward, np.where(radius > 0.0, 0.0, gap))
+    distance = np.min(np.hypot(away[..., 0], away[..., 1]), axis=1, where=within, initial=np.inf)
+    outward = np.maximum(outward, np.where(radius > 0.0, 0.0, distance))
     return np.maximum(outward, inward), inward
