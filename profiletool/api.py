@@ -147,7 +147,7 @@ def verify_design(
     Raises
     ------
     UnreadableInput
-        The file holds no formula.
+        The file holds no formula, or a joint bends out of the plane, which no formula follows.
     """
     points = np.asarray(target.points if isinstance(target, Profile) else target, dtype=float)
     return check(recomputed(design, points, read_formula(formula)), points, progress)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fem.actuator import AWAY, TOWARD, Actuator, Window
+from fem.actuator import Actuator, Window
 from fem.errors import NotConverged
 from profiletool.bending.model import Chain
 from profiletool.campaign.keys import key_of, seal, unseal
@@ -17,15 +17,16 @@ from profiletool.records.units import BAR_PER_MPA
 from profiletool.verify.run import inflate, reason
 
 SCHEMA = "profiletool.response_run/1"  # to be raised where `run` reads other numbers off a solution
-_CHAIN, _LINES = ("centre", "openF", "alpha", "sense"), ("pressure", "along", "facing", "far")
+_CHAIN = ("centre", "openF", "alpha", "alpha_center")
+_LINES = ("pressure", "along", "facing", "far")
 
 
 def run(task: ResponseTask) -> Lines:
     """Run finite elements, as far as they go; without states where they do not even begin."""
     chain = task.chain
     windows = tuple(
-        Window(float(c), float(o), float(a), float(TOWARD if s > 0.0 else AWAY))
-        for c, o, a, s in zip(chain.centre, chain.openF, chain.alpha, chain.sense, strict=True)
+        Window(*(float(number) for number in joint))
+        for joint in zip(chain.centre, chain.openF, chain.alpha, chain.alpha_center, strict=True)
     )
     actuator = Actuator(chain.length, windows, plug=PLUG_MM)
     pressures, ended = task.pressures_bar, None
@@ -104,8 +105,7 @@ def from_json(data: bytes) -> Lines:
             for name in ("facing", "far")
         )
         tree = body["chain"]
-        centre, openF, alpha, sense = (np.array(tree[name], dtype=float) for name in _CHAIN)
-        chain = Chain(centre, openF, alpha, sense, tree["length"])
+        chain = Chain(*(np.array(tree[name], dtype=float) for name in _CHAIN), tree["length"])
         return Lines(body["name"], chain, pressure, along, facing, far, body["ended"])
     except (KeyError, TypeError, ValueError) as error:
         raise ValueError("this is no run of lines") from error

@@ -81,6 +81,6 @@ def dossier_of(result: Result, scene: Scene, template_svg: str) -> Dossier:
 
 def formula_marks(design: Design) -> tuple[Mark, ...]:
     """Give the formula's angles to compare with."""
-    angles = [joint.sense * joint.theta_formula_deg for joint in design.joints]
+    angles = [joint.signed(joint.theta_formula_deg) for joint in design.joints]
     label = f"formula, {design.pressure_bar:.2f} bar"
     return (Mark(label, design.pressure_bar, angles),)

@@ -88,8 +88,8 @@ def compared_text(
     if abs(last.pressure_bar - design.pressure_bar) < 1e-6:
         lines.append("joint  wanted deg  formula deg  FE deg")
         lines += [
-            f"{j.number:5d}  {j.sense * j.theta_target_deg:10.1f}  "
-            f"{j.sense * j.theta_formula_deg:11.1f}  {theta:6.1f}"
+            f"{j.number:5d}  {j.signed(j.theta_target_deg):10.1f}  "
+            f"{j.signed(j.theta_formula_deg):11.1f}  {theta:6.1f}"
             for j, theta in zip(design.joints, last.theta_deg, strict=True)
         ]
     if off is None:

@@ -134,7 +134,7 @@ def _verdict(dossier: Dossier) -> Markup:
 def _facts(dossier: Dossier) -> Markup:
     design = dossier.scene.design
     tube, source, joints = design.tube, design.source, design.joints
-    away = sum(joint.sense < 0.0 for joint in joints)
+    away = sum(joint.away for joint in joints)
     rows = [
         ("Pressure", f"{design.pressure_bar:.2f} bar"),
         ("Joints", f"{len(joints)}" + (f" ({away} away)" if away else "")),

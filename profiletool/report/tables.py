@@ -64,7 +64,7 @@ def slit_table(design: Design) -> Markup:
             f"{len(slit_rows(joint, pitch))}",
             f"{sum(slit.joint == joint.number for slit in found)}",
             threads_uncut(joint, design),
-            "object's" if joint.sense > 0.0 else "far",
+            "far" if joint.away else "object's",
         )
         for joint in design.joints
     ]
@@ -173,9 +173,9 @@ def _joint_row(joint: Joint, design: Design, place: float) -> tuple[str, ...]:
         f"{len(slit_rows(joint, gauze.pitch_mm))}",
         f"{joint.alpha_closed_deg:.1f}",
         threads_uncut(joint, design),
-        f"{'toward' if joint.sense > 0.0 else 'away'} ({joint.alpha_center_deg:g}°)",
+        f"{'away' if joint.away else 'toward'} ({joint.alpha_center_deg:g}°)",
         *(
-            _NOTHING if theta is None else signed(joint.sense * theta)
+            _NOTHING if theta is None else signed(joint.signed(theta))
             for theta in (
                 joint.theta_target_deg,
                 joint.theta_formula_deg,

@@ -82,7 +82,7 @@ def test_lines_come_back_to_the_last_bit():
     again = from_json(to_json(arc))
     assert same(again, arc)
     assert (again.name, again.ended) == ("arc", "limit point at 1.00 bar")
-    for name in ("centre", "openF", "alpha", "sense"):
+    for name in ("centre", "openF", "alpha", "alpha_center"):
         assert_array_equal(getattr(again.chain, name), getattr(arc.chain, name))
     assert again.chain.length == 81.0
     nothing = RESPONSE_RUN.died(a_task())
@@ -118,7 +118,7 @@ def test_every_task_of_the_campaign_has_a_key_of_its_own():
         replace(task, pressures_bar=task.pressures_bar[:-1]),
         *(
             replace(task, chain=replace(task.chain, **{name: getattr(task.chain, name) * 1.001}))
-            for name in ("centre", "openF", "alpha", "sense", "length")
+            for name in ("centre", "openF", "alpha", "alpha_center", "length")
         ),
     ]
     assert len({key(other) for other in [task, *others]}) == len(others) + 1

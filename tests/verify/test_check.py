@@ -13,6 +13,7 @@ import fem
 from fem.errors import NotConverged
 from fem.material import PAPER_RUBBER
 from formula.rubber import RubberLaw
+from profiletool.api import verify_design
 from profiletool.bending.kinematics import deform
 from profiletool.errors import UnreadableInput
 from profiletool.files.design_json import load_design, to_json
@@ -21,7 +22,9 @@ from profiletool.records.design import Design, Joint
 from profiletool.records.frames import Pose
 from profiletool.records.profile import Profile
 from profiletool.records.side import side_sign
-from profiletool.verify.check import check, magnitude
+from profiletool.report.dossier import formula_marks
+from profiletool.report.fe import compared_text
+from profiletool.verify.check import check
 from profiletool.verify.lines import Placement
 from profiletool.verify.run import DOWN, LYING, STEPS, Run, inflate, pressures_to, run_design, solve
 from profiletool.verify.tube import actuator_of
@@ -101,7 +104,28 @@ def test_it_bends_toward_the_object_or_away(
     turned = (turned + 180.0) % 360.0 - 180.0
     # Positive theta turns the tube's end toward the object, whose side the sign tells.
     assert turned == pytest.approx(theta, abs=0.1 * abs(theta))
-    assert magnitude(theta, center) > 0.0
+    assert design.joints[0].signed(theta) > 0.0
+
+
+@pytest.mark.parametrize("center", [200.0, 160.0])
+def test_a_joint_out_of_the_plane_is_verified_all_the_same(center: float, samples: Path) -> None:
+    # 20 deg off sideways, a little to the object's half of the tube and to the far one.
+    design = short(samples, center)
+    verification = run_design(design, 0.6).verification
+    assert verification.converged
+    (theta,) = verification.last.theta_deg  # about the joint's own axis
+    assert design.joints[0].signed(theta) > 3.0
+    # Of a bend sideways little is seen in the plane.
+    start, end = verification.last.shape.facing[[0, -1]]
+    rise = abs(heading_deg(np.array([start, end])) - heading_deg(verification.rest.shape.facing))
+    assert min(rise, 360.0 - rise) < 0.4 * abs(theta)
+    # What is wanted of the joint has the sign of what finite elements find.
+    row = compared_text(design, verification, None, None).splitlines()[1].split()
+    assert np.sign([float(number) for number in row[1:]]).tolist() == [np.sign(theta)] * 3
+    (mark,) = formula_marks(design)
+    assert list(mark.theta_deg) == [np.sign(theta) * 6.0]
+    with pytest.raises(UnreadableInput, match="joint 1 bends out of the plane"):
+        verify_design(design, along(verification.last.shape.facing))
 
 
 def test_both_sides_are_mirror_images(samples: Path, run: Run) -> None:

@@ -11,6 +11,7 @@ import pytest
 from fem.equilibrium import Critical
 from fem.errors import BadGeometry, NotConverged
 from fem.solution import Solution
+from profiletool.bending.model import centers_of
 from profiletool.bending.response import Response
 from profiletool.joints.bounds import Limits
 from profiletool.joints.closest import closest_points, distance_jacobian
@@ -26,7 +27,7 @@ from profiletool.verify.forward import FeForwardModel
 LIMITS = Limits((1.2, 3.0), (0.02, 0.2), 2.0, 4.0, 10.0, 250.0, 0.2, 3.0)
 NUMBERS = Parameters(
     openF=np.array([8.0, 6.0]),
-    sense=np.array([1.0, -1.0]),
+    alpha_center=centers_of(np.array([1.0, -1.0])),
     end_mm=6.0,
     start=(3.0, -2.0),
     heading=2.5,

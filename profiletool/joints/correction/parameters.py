@@ -51,7 +51,7 @@ class Parameters:
 
     Attributes
     ----------
-    openF, sense : (n,)
+    openF, alpha_center : (n,)
         As in `Chain`.
     end_mm : float
         Wrapped length at the closed end.
@@ -64,7 +64,7 @@ class Parameters:
     """
 
     openF: FloatArray
-    sense: FloatArray
+    alpha_center: FloatArray
     end_mm: float
     start: tuple[float, float]
     heading: float
@@ -125,7 +125,9 @@ class Parameters:
             self.start[1] + back * ty + float(offset) * ny,
             float(np.degrees(heading)),
         )
-        return PosedChain(Chain(centre, self.openF, alpha, self.sense, length), pressure, pose)
+        return PosedChain(
+            Chain(centre, self.openF, alpha, self.alpha_center, length), pressure, pose
+        )
 
     def pack(self, posed: PosedChain) -> FloatArray:
         """Give the vector of a posed chain: (size,), the inverse of `unpack` but for the end."""
@@ -150,7 +152,7 @@ def parameters_of(chain: Chain, profile: Profile, limits: Limits) -> Parameters:
     x, y = (float(v) for v in profile.points[0])
     end = chain.length - float(chain.centre[-1] + 0.5 * chain.openF[-1])
     heading = float(profile.heading[0])
-    return Parameters(chain.openF, chain.sense, end, (x, y), heading, profile.sign, limits)
+    return Parameters(chain.openF, chain.alpha_center, end, (x, y), heading, profile.sign, limits)
 
 
 def facing_motion(

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from profiletool.bending.model import Chain, Model
+from profiletool.bending.model import Model
 from profiletool.joints.bounds import Limits
 from profiletool.joints.closest import (
     ClosestPoints,
@@ -104,15 +104,14 @@ def cut_end(posed: PosedChain, model: Model, goal: Goal) -> PosedChain:
     chain, limits, sign = posed.chain, goal.limits, goal.profile.sign
     edge = float(chain.centre[-1] + 0.5 * chain.openF[-1])
     longest = max(chain.length, edge + limits.end_mm + _SPARE_MM)
-    long = Chain(chain.centre, chain.openF, chain.alpha, chain.sense, longest)
+    long = replace(chain, length=longest)
     shape = model.shape(long, posed.pressure, posed.pose, sign)
     # Of the straight end only: the profile may come near the tube elsewhere.
     tip, before = shape.facing[-1], shape.facing[-2]
     along = (tip - before) / np.hypot(*(tip - before))
     reached = longest + float((goal.points[-1] - tip) @ along)
     length: float = max(min(reached, limits.max_length_mm), edge + limits.end_mm)
-    chain = Chain(chain.centre, chain.openF, chain.alpha, chain.sense, length)
-    return PosedChain(chain, posed.pressure, posed.pose)
+    return replace(posed, chain=replace(chain, length=length))
 
 
 def judge(posed: PosedChain, model: Model, goal: Goal) -> Polished:

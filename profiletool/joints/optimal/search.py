@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from profiletool.bending.model import Chain, Model
+from profiletool.bending.model import Chain, Model, centers_of
 from profiletool.joints.bounds import Limits
 from profiletool.joints.correction.parameters import PosedChain
 from profiletool.joints.misfit import Objective, objective_of
@@ -122,7 +122,7 @@ class SearchResult:
         along, _ = base_axes(heading, profile.sign)
         x, y = lines.point[steps[0].start] + (place - root) * along
         pose = Pose(float(x), float(y), float(np.degrees(heading)))
-        return PosedChain(Chain(centre, openF, alpha, sense, length), P, pose)
+        return PosedChain(Chain(centre, openF, alpha, centers_of(sense), length), P, pose)
 
 
 def search(

@@ -10,7 +10,7 @@ import pytest
 from formula.files import load_formula
 from profiletool.bending.constant_curvature import FormulaModel
 from profiletool.bending.kinematics import Bend, deform
-from profiletool.bending.model import Chain, Model
+from profiletool.bending.model import Chain, Model, centers_of
 from profiletool.bending.response import Response
 from profiletool.joints.bounds import Limits
 from profiletool.joints.closest import closest_points
@@ -40,7 +40,7 @@ OFF = np.array([0.1, -0.12, 0.08, 1.0, -1.2, 0.7, -0.006])
 def numbers(sign: float = 1.0) -> Parameters:
     return Parameters(
         openF=np.array([8.0, 10.0, 6.0]),
-        sense=np.array([1.0, -1.0, 1.0]),
+        alpha_center=centers_of(np.array([1.0, -1.0, 1.0])),
         end_mm=20.0,
         start=(3.0, -2.0),
         heading=2.5,

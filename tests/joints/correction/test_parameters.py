@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from formula.files import load_formula
 from profiletool.bending.constant_curvature import FormulaModel
+from profiletool.bending.model import centers_of
 from profiletool.joints.bounds import Limits
 from profiletool.joints.closest import closest_points, distance_jacobian
 from profiletool.joints.correction.parameters import Parameters, facing_motion
@@ -18,7 +19,7 @@ MODEL = FormulaModel(load_formula(), 10.0)
 LIMITS = Limits(MODEL.alpha, (0.02, 0.2), 2.0, 4.0, 10.0, 250.0)
 PARAMETERS = Parameters(
     openF=np.array([8.0, 10.0, 6.0]),
-    sense=np.array([1.0, 1.0, -1.0]),
+    alpha_center=centers_of(np.array([1.0, 1.0, -1.0])),
     end_mm=20.0,
     start=(3.0, -2.0),
     heading=2.5,

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from formula.files import load_formula
 from profiletool.bending.constant_curvature import FormulaModel
-from profiletool.bending.model import Chain
+from profiletool.bending.model import Chain, centers_of
 from profiletool.errors import NoObject
 from profiletool.joints.bounds import cuts_of, limits_of
 from profiletool.joints.misfit import misfit
@@ -145,7 +145,9 @@ def actuators() -> st.SearchStrategy[Chain]:
     def chain(joints: list[tuple[float, float, float, float]]) -> Chain:
         openF, alpha, sense, wrapped = (np.array(v) for v in zip(*joints, strict=True))
         edge = 6.0 + np.cumsum(wrapped + openF)
-        return Chain(edge - 0.5 * openF, openF, np.radians(alpha), sense, float(edge[-1]) + 15.0)
+        return Chain(
+            edge - 0.5 * openF, openF, np.radians(alpha), centers_of(sense), float(edge[-1]) + 15.0
+        )
 
     joint = st.tuples(
         st.sampled_from(CUTS.tolist()),
