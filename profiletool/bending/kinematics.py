@@ -15,7 +15,7 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike
 
-from profiletool.records.frames import Pose, Shape
+from profiletool.records.frames import Pose, Shape, direction, outward
 from profiletool.records.units import FloatArray
 
 PIVOT_SHARE = 0.79  # of the tube's radius, from its axis toward the uncut sector
@@ -70,11 +70,11 @@ def deform(
     step = np.diff(turn)
     chord = np.diff(along) * speed * np.sinc(step / (2.0 * np.pi))
     middle = 0.5 * (heading[1:] + heading[:-1])
-    steps = chord[:, None] * np.column_stack([np.cos(middle), np.sin(middle)])
+    steps = chord[:, None] * direction(middle)
     start = np.array([[pose.x_mm, pose.y_mm]])
     facing = np.concatenate([start, start + np.cumsum(steps, axis=0)])
-    outward = sign * np.column_stack([np.sin(heading), -np.cos(heading)])
-    return Shape(along, facing, facing + radius_mm * outward, facing + 2.0 * radius_mm * outward)
+    across = outward(heading, sign)
+    return Shape(along, facing, facing + radius_mm * across, facing + 2.0 * radius_mm * across)
 
 
 def _sample(edges: FloatArray, rates: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

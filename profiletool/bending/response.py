@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from profiletool.bending.model import Chain
 from profiletool.bending.neighbours import PLUG_MM
 from profiletool.bending.response_table import ResponseTable, shipped
-from profiletool.records.frames import Pose, Shape
+from profiletool.records.frames import Pose, Shape, base_axes
 from profiletool.records.units import FloatArray
 
 Values = TypeVar("Values", FloatArray, NDArray[np.complex128])
@@ -184,12 +184,7 @@ class Response:
         half = 0.5 * (table.diameter + growth)[:, None] * across
         centre[:, 1] += 0.5 * table.diameter
         heading = np.radians(pose.heading_deg)
-        axes = np.array(
-            [
-                [np.cos(heading), np.sin(heading)],
-                [sign * np.sin(heading), -sign * np.cos(heading)],
-            ]
-        )
+        axes = np.array(base_axes(heading, sign))
         start = np.array([pose.x_mm, pose.y_mm])
         facing, axis, far = (
             start + self.length_scale * (line @ axes)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from profiletool.profile.curve import points_at
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
 
@@ -19,7 +20,7 @@ def target_points(profile: Profile, step_mm: float = STEP_MM) -> FloatArray:
     """Points of a profile that count, evenly spaced, both ends among them: (M, 2) mm."""
     count = max(round(profile.length_mm / step_mm), 1)
     s = np.linspace(0.0, profile.length_mm, count + 1)
-    return np.column_stack([np.interp(s, profile.s, profile.points[:, k]) for k in (0, 1)])
+    return points_at(s, profile.s, profile.points)
 
 
 @dataclass(frozen=True)

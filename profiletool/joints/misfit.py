@@ -20,7 +20,7 @@ import shapely
 from numpy.typing import NDArray
 
 from profiletool.records.design import Misfit
-from profiletool.records.frames import Shape
+from profiletool.records.frames import Shape, cross, direction
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
 
@@ -236,8 +236,7 @@ def depth_inside(shape: Shape, profile: Profile) -> float:
     at = np.searchsorted(profile.s, along * (profile.length_mm / target.length))
     at = np.clip(at, 0, len(profile.s) - 1)
     away = shape.facing - profile.points[at]
-    heading = profile.heading[at]
-    inward = profile.sign * (np.cos(heading) * away[:, 1] - np.sin(heading) * away[:, 0])
+    inward = profile.sign * cross(direction(profile.heading[at]), away)
     return float(np.max(inward, where=inside, initial=0.0))
 
 

@@ -22,9 +22,10 @@ from profiletool.joints.correction.correct import (
     correct,
 )
 from profiletool.joints.correction.parameters import PosedChain, parameters_of
+from profiletool.joints.layout import Layout
 from profiletool.joints.optimal.choose import TOLERANCE_MM, Choice, ChoiceOptions, choose
-from profiletool.joints.paper.assign import Layout
 from profiletool.joints.plan import Plan
+from profiletool.profile.curve import points_at
 from profiletool.records.design import AWAY_DEG, TOWARD_DEG, Joint
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
@@ -34,6 +35,7 @@ from profiletool.records.units import BAR_PER_MPA, FloatArray
 
 S = TypeVar("S")
 _PRESSURE_STEP = 0.001  # MPa: what a gauge can be set to
+_CHOICES = 2
 _AGAIN = 0.97  # of the pressure that a tube stands, where it does not stand the one asked
 
 
@@ -74,34 +76,51 @@ def optimal_plan(
             f"{BAR_PER_MPA * model.pressure[0]:g} bar from which on the joints are known by the "
             f"{_by(model)}"
         )
-    options = ChoiceOptions(
-        tolerance_mm=request.tolerance_mm or TOLERANCE_MM,
-        interference_mm=request.interference_mm,
-        count=request.joints,
-        base_free=request.base_free,
+    posed, choice, notes = _standing(request, profile, model, say, forward)
+    bent = model.shape(posed.chain, posed.pressure, posed.pose, profile.sign)
+    return Plan(
+        layout=_layout(posed, choice, bent, model, formula),
+        by=_by(model),
+        bent=bent,
+        places=_places(bent, posed.chain, profile),
+        notes=notes,
+        choice=choice,
+        model=model,
     )
 
+
+def _standing(
+    request: Request,
+    profile: Profile,
+    model: Model,
+    say: Callable[[str], None],
+    forward: ForwardModel[S] | None,
+) -> tuple[PosedChain, Choice, tuple[str, ...]]:
+    """Choose and correct joints; where the forward model cannot bend them, again at less pressure.
+
+    Where it cannot bend the second choice either, that stays as the bending model corrects it.
+    The notes say so.
+    """
+
     def by_model(choice: Choice) -> PosedChain:
-        return _corrected(
-            request, BendingForwardModel(model), profile, model, choice, lambda line: None
-        )
+        bending = BendingForwardModel(model)
+        return _corrected(request, bending, profile, model, choice, lambda line: None)
 
     def say_fe(line: str) -> None:
         say(f"finite elements, {line}")
 
     material, notes = request.tube, list[str]()
-    for _ in range(2):
-        choice = _chosen(profile, model, material, options)
+    for _ in range(_CHOICES):
+        choice = _chosen(request, profile, model, material)
         say(
             f"joints: {len(choice.chain.openF)} at {BAR_PER_MPA * choice.pressure:.2f} bar, "
             f"{choice.misfit.rms_mm:.2f} mm RMS off the profile by the {_by(model)}"
         )
         if forward is None:
-            posed = by_model(choice)
-            break
+            return by_model(choice), choice, ()
         try:
             posed = _corrected(request, forward, profile, model, choice, say_fe)
-            break
+            return posed, choice, tuple(notes)
         except CannotBend as problem:
             notes.append(f"the first choice of joints did not stand by FE: {problem}")
             say(notes[-1])
@@ -109,16 +128,7 @@ def optimal_plan(
             material = replace(material, max_pressure_bar=BAR_PER_MPA * _AGAIN * problem.reached)
             if problem.reached <= choice.limits.pressure[0]:
                 break
-    bent = model.shape(posed.chain, posed.pressure, posed.pose, profile.sign)
-    return Plan(
-        layout=_layout(posed, choice, bent, model, formula),
-        by=_by(model),
-        bent=bent,
-        places=_places(bent, posed.chain, profile),
-        notes=tuple(notes),
-        choice=choice,
-        model=model,
-    )
+    return posed, choice, tuple(notes)
 
 
 def _model(request: Request, formula: Formula) -> Model:
@@ -135,7 +145,13 @@ def _by(model: Model) -> str:
     return "joint response" if isinstance(model, Response) else "formula"
 
 
-def _chosen(profile: Profile, model: Model, material: TubeSpec, options: ChoiceOptions) -> Choice:
+def _chosen(request: Request, profile: Profile, model: Model, material: TubeSpec) -> Choice:
+    options = ChoiceOptions(
+        tolerance_mm=request.tolerance_mm or TOLERANCE_MM,
+        interference_mm=request.interference_mm,
+        count=request.joints,
+        base_free=request.base_free,
+    )
     try:
         return choose(profile, model, material, options)
     except OutOfRange as error:
@@ -214,13 +230,13 @@ def angles(shape: Shape, chain: Chain) -> FloatArray:
     edges = np.concatenate([[0.0], np.column_stack([starts, ends]).ravel(), [chain.length]])
     middles = 0.5 * (edges[::2] + edges[1::2])
     across = shape.far - shape.facing
-    x, y = (np.interp(middles, shape.along, across[:, k]) for k in (0, 1))
+    x, y = points_at(middles, shape.along, across).T
     turns = np.diff(np.unwrap(np.arctan2(y, x)))
     return np.asarray(turns, dtype=float)
 
 
 def _places(shape: Shape, chain: Chain, profile: Profile) -> FloatArray:
     """Arc length of the profile's points nearest to the joints on the bent tube: (n,) mm."""
-    at = np.column_stack([np.interp(chain.centre, shape.along, shape.facing[:, k]) for k in (0, 1)])
+    at = points_at(chain.centre, shape.along, shape.facing)
     away = np.hypot(*np.moveaxis(profile.points[:, None] - at, -1, 0))
     return np.asarray(profile.s[np.argmin(away, axis=0)], dtype=float)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from profiletool.bending.model import Model
+from profiletool.joints.layout import Layout
 from profiletool.joints.optimal.choose import Choice, TradeOff
-from profiletool.joints.paper.assign import Layout
 from profiletool.joints.paper.pieces import Rules
 from profiletool.joints.paper.sectors import BendingSector
 from profiletool.records.frames import Shape

@@ -8,8 +8,9 @@ import numpy as np
 
 from formula.theta import Formula, beyond
 from profiletool.bending.kinematics import meets_itself
+from profiletool.joints.layout import Layout
 from profiletool.joints.misfit import depth_inside
-from profiletool.joints.paper.assign import NEAR_DEG, Layout
+from profiletool.joints.paper.assign import NEAR_DEG
 from profiletool.joints.paper.sectors import BendingSector
 from profiletool.joints.paper_method import PAPER_TOLERANCE_MM
 from profiletool.joints.windows import best_seam, off_mesh

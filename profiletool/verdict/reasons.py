@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from formula.theta import Formula
+from profiletool.joints.layout import Layout
 from profiletool.joints.optimal.choose import TOLERANCE_MM
-from profiletool.joints.paper.assign import Layout
 from profiletool.joints.paper.pieces import Rules
 from profiletool.joints.paper.sectors import BendingSector
 from profiletool.records.design import Design

@@ -16,7 +16,6 @@ LONG_FUNCTIONS = {
     "fem/solve.py:solve_near",
     "profiletool/cli/derive.py:derive",
     "profiletool/cli/design.py:design",
-    "profiletool/joints/optimal_method.py:optimal_plan",
 }
 # Commands have a parameter for each option.
 COMMANDS = {
@@ -25,7 +24,7 @@ COMMANDS = {
     "profiletool/cli/fe.py:joint",
     "profiletool/cli/template.py:template",
 }
-WIDE_FUNCTIONS = {"profiletool/joints/optimal/edges.py:_near"}
+WIDE_FUNCTIONS: set[str] = set()
 
 
 @pytest.fixture(scope="module")

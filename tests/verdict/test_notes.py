@@ -7,7 +7,8 @@ import pytest
 
 from formula.files import load_formula
 from profiletool.bending.kinematics import Bend, deform
-from profiletool.joints.paper.assign import Layout, joint_rules, theta_table
+from profiletool.joints.layout import Layout
+from profiletool.joints.paper.assign import joint_rules, theta_table
 from profiletool.joints.paper.sectors import BendingSector
 from profiletool.profile.target import Reach, profile_of_object
 from profiletool.records.design import Joint, Misfit

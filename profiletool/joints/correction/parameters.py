@@ -14,6 +14,7 @@ import numpy as np
 
 from profiletool.bending.model import Chain, Model
 from profiletool.joints.bounds import Limits
+from profiletool.profile.curve import points_at
 from profiletool.records.frames import Pose, Shape, base_axes
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
@@ -171,7 +172,6 @@ def facing_motion(
         moved[k] += step if moved[k] + step <= high[k] else -step
         at = parameters.unpack(moved)
         other = model.shape(at.chain, at.pressure, at.pose, parameters.sign)
-        for axis in (0, 1):
-            there = np.interp(shape.along, other.along, other.facing[:, axis])
-            motion[k, :, axis] = (there - shape.facing[:, axis]) / (moved[k] - vector[k])
+        there = points_at(shape.along, other.along, other.facing)
+        motion[k] = (there - shape.facing) / (moved[k] - vector[k])
     return motion

@@ -19,9 +19,8 @@ from profiletool.joints.misfit import is_good, score
 from profiletool.joints.optimal.lines import Discretisation
 from profiletool.joints.optimal.polish import Goal, Polished, at_bound, goal_of, judge, polish
 from profiletool.joints.optimal.search import MOST_JOINTS, SearchResult, search
-from profiletool.joints.paper.pieces import cross, direction
 from profiletool.records.design import Misfit
-from profiletool.records.frames import Pose, Shape
+from profiletool.records.frames import Pose, Shape, cross, direction
 from profiletool.records.profile import Profile
 from profiletool.records.request import INTERFERENCE_MM, TubeSpec
 from profiletool.records.units import BAR_PER_MPA, FloatArray

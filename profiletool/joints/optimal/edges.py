@@ -74,6 +74,23 @@ class Priced:
     cut: NDArray[np.intp]
 
 
+@dataclass(frozen=True)
+class _Pairs:
+    """Pairs of lines, and the points of the profile about the vertex between them; (E,) each.
+
+    ``start``, ``end``, ``before`` and ``after`` are those of `Edges`. The vertex lies before the
+    point ``split``; points from ``low`` to before ``high`` are near it and count.
+    """
+
+    start: IntArray
+    end: IntArray
+    before: FloatArray
+    after: FloatArray
+    split: IntArray
+    low: IntArray
+    high: IntArray
+
+
 def summed_cost(lines: CandidateLines, objective: Objective) -> FloatArray:
     """Cost of a line at all points up to each: (N, M + 1)."""
     cost = objective.density(Deviation(-lines.out.astype(np.float32))) * lines.weight
@@ -122,10 +139,10 @@ def edges_of(
     straight = summed[start, low] - summed[start, first] + summed[end, last + 1] - summed[end, high]
     kept = np.flatnonzero(straight <= most_cost)
     kept = kept[np.argsort(end[kept], kind="stable")]
-    start, end, split, low, high = start[kept], end[kept], split[kept], low[kept], high[kept]
-    turn, before, after, straight = turn[kept], before[kept], after[kept], straight[kept]
-    near, at, weight = _near(lines, start, end, before, after, split, low, high, wide)
-    return Edges(sense, start, end, turn, before, after, straight, near, at, weight)
+    start, end, before, after = start[kept], end[kept], before[kept], after[kept]
+    pairs = _Pairs(start, end, before, after, split[kept], low[kept], high[kept])
+    near, at, weight = _near(lines, pairs, wide)
+    return Edges(sense, start, end, turn[kept], before, after, straight[kept], near, at, weight)
 
 
 def _turning(
@@ -153,29 +170,19 @@ def _vertex(
     return x - back * np.cos(turn), back - lines.along[end, place]
 
 
-def _near(
-    lines: CandidateLines,
-    start: IntArray,
-    end: IntArray,
-    before: FloatArray,
-    after: FloatArray,
-    split: IntArray,
-    low: IntArray,
-    high: IntArray,
-    wide: int,
-) -> tuple[Float32, Float32, Float32]:
+def _near(lines: CandidateLines, pairs: _Pairs, wide: int) -> tuple[Float32, Float32, Float32]:
     """Points near the vertices, each as the line on its side of the vertex sees it."""
-    point = split[:, None] + np.arange(-wide, wide)
-    counted = (point >= low[:, None]) & (point < high[:, None])
+    point = pairs.split[:, None] + np.arange(-wide, wide)
+    counted = (point >= pairs.low[:, None]) & (point < pairs.high[:, None])
     point = np.clip(point, 0, len(lines.weight) - 1)
     out, along = lines.out.astype(np.float32), lines.along.astype(np.float32)
     side = [np.s_[:, :wide], np.s_[:, wide:]]
     near, at = np.empty(point.shape, np.float32), np.empty(point.shape, np.float32)
-    for line, here in ((start, side[0]), (end, side[1])):
+    for line, here in ((pairs.start, side[0]), (pairs.end, side[1])):
         near[here] = out[line[:, None], point[here]]
         at[here] = along[line[:, None], point[here]]
-    at[side[0]] -= before[:, None].astype(np.float32)
-    at[side[1]] = -(at[side[1]] + after[:, None].astype(np.float32))
+    at[side[0]] -= pairs.before[:, None].astype(np.float32)
+    at[side[1]] = -(at[side[1]] + pairs.after[:, None].astype(np.float32))
     weight = np.where(counted, lines.weight[point], 0.0).astype(np.float32)
     return near, at, weight
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from profiletool.bending.kinematics import facing_stretch
+from profiletool.records.frames import cross, direction
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
 
@@ -77,16 +78,6 @@ class Pieces:
             + _PER_MM * self.missing_mm
             + _BLOCKED_MM * self.blocked
         )
-
-
-def direction(heading: float | FloatArray) -> FloatArray:
-    """Give unit vectors of headings in rad: (...) -> (..., 2)."""
-    return np.stack([np.cos(heading), np.sin(heading)], axis=-1)
-
-
-def cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Give the cross product in the plane, positive where b points left of a: (..., 2) -> (...)."""
-    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
 
 
 def pieces_from(profile: Profile, grid: IntArray, i: int, rules: Rules) -> Pieces:

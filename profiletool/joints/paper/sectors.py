@@ -20,7 +20,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from profiletool.joints.paper.pieces import IntArray, Pieces, Rules, cross, direction, pieces_from
+from profiletool.joints.paper.pieces import IntArray, Pieces, Rules, pieces_from
+from profiletool.records.frames import cross, direction
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
 
