@@ -36,7 +36,17 @@ class Bend:
 
 
 def facing_stretch(turn_rad: ArrayLike, radius_mm: float) -> FloatArray:
-    """Return by how much the object-facing line lengthens in a joint (shortens where negative)."""
+    """Lengthening of the object-facing line in a joint, mm; it shortens where negative.
+
+    Lengths are kept on the axis of rotation, at `PIVOT_SHARE` of the radius.
+
+    Parameters
+    ----------
+    turn_rad : (...)
+        Positive toward the object.
+    radius_mm : float
+        Of the tube.
+    """
     turn = np.asarray(turn_rad, dtype=float)
     stretch: FloatArray = PIVOT_SHARE * radius_mm * np.abs(turn) - radius_mm * turn
     return stretch

@@ -69,15 +69,15 @@ class Model(Protocol):
 
     @property
     def openF(self) -> tuple[float, float]:
-        """What cuts it holds for, mm."""
+        """Range of cuts that it holds for, mm."""
 
     @property
     def alpha(self) -> tuple[float, float]:
-        """What alpha_closed it holds for, rad."""
+        """Range of alpha_closed that it holds for, rad."""
 
     @property
     def pressure(self) -> tuple[float, float]:
-        """What pressures it holds for, MPa."""
+        """Range of pressures that it holds for, MPa."""
 
     def theta(self, openF: ArrayLike, alpha: ArrayLike, pressure: ArrayLike) -> FloatArray:
         """Angle of a joint alone, rad; arguments broadcast."""

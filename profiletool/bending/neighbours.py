@@ -1,4 +1,4 @@
-"""What a joint's neighbours, the clamped end and the closed end do to its bending and stretch.
+"""Influence of neighbours, of the clamped end and of the closed end on a joint's turn and stretch.
 
 A cut lets the sections at its two edges warp: the threads that it severs move apart further than
 those of the uncut sector. Wrapped sectors resist, by shear in the rubber; threads that are stiff

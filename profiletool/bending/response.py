@@ -160,7 +160,7 @@ class Response:
         return np.column_stack([self.length_scale * facing, -turn])
 
     def factors(self, chain: Chain, pressure: float) -> FloatArray:
-        """Tell what neighbours and ends make of every joint's turn and stretch: (n, 2)."""
+        """Factors on every joint's turn and stretch by its neighbours and the ends: (n, 2)."""
         own = self._own_chain(chain)
         return np.exp(self.table.neighbours.log_factors(own, pressure / self.pressure_scale))
 

@@ -1,4 +1,4 @@
-"""Tabulated fields of single joints and what neighbours do to them: the response's data.
+"""The data of the joint response: tabulated fields of single joints, and neighbours' influence.
 
 All numbers are those of one tube, the *tabulated* one; `profiletool.bending.response` carries them
 over to others.
@@ -70,7 +70,7 @@ class Axis:
 
 @dataclass(frozen=True)
 class ResponseTable:
-    """What finite elements say of single joints in a long tube.
+    """Single joints in a long tube, by finite elements.
 
     Attributes
     ----------
@@ -109,7 +109,7 @@ class ResponseTable:
     about: dict[str, Any]
 
     def places(self, openF: FloatArray) -> FloatArray:
-        """Where halves of n joints are tabulated, from their middles: (n, M) mm."""
+        """Places at which halves of n joints are tabulated, from their middles: (n, M) mm."""
         half = 0.5 * openF[:, None]
         return np.concatenate([half * self.inside, half + self.outside], axis=1)
 

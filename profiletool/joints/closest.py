@@ -25,7 +25,7 @@ def target_points(profile: Profile, step_mm: float = STEP_MM) -> FloatArray:
 
 @dataclass(frozen=True)
 class ClosestPoints:
-    """Where an object-facing line is closest to each of M points.
+    """Points of an object-facing line, the closest to each of M points.
 
     Attributes
     ----------

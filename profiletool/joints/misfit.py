@@ -1,8 +1,9 @@
-"""The misfit between a bent tube and its profile: the objective of every choice, and the verdict's.
+"""The misfit between a bent tube and its profile, as an objective and as a verdict.
 
-The objective is a list of terms (function, goal, weight) in least squares. Dynamic programming,
-polishing and correction all ask it, each for what it needs: costs, residuals or their Jacobian. A
-new aim is one more `Term`, in `shape_terms` where it depends on the bent shape.
+The objective is a list of terms (function, goal, weight) in least squares. Dynamic programming
+takes its cost at every point, the polish its residuals and their Jacobian, the correction its cost
+and its terms' rows. A new aim is one more `Term`: in `shape_terms` where it has a value at every
+point of the profile, in `tube_terms` where it has one for the whole tube.
 
 Glossary
 --------
@@ -37,7 +38,9 @@ DEPTH_SLACK_MM = 0.1  # beyond the allowed depth, that nobody can see
 
 @dataclass(frozen=True)
 class Deviation:
-    """A bent tube against its profile: what the terms of an objective are functions of.
+    """A bent tube against its profile: the quantities that terms are functions of.
+
+    A term that needs another quantity gets a field here, and its callers fill it.
 
     Attributes
     ----------
@@ -218,7 +221,7 @@ def misfit(shape: Shape, profile: Profile) -> Misfit:
 
 
 def misfit_to(shape: Shape, points: FloatArray) -> Misfit:
-    """Give the same for a profile of which only the points (N, 2) are known, 0.1 mm apart."""
+    """`misfit` to a profile of which only the points (N, 2), 0.1 mm apart, are known."""
     line, target = shapely.LineString(shape.facing), _target_line(points)
     shapely.prepare([line, target])
     to_line = shapely.distance(shapely.points(points), line)
@@ -230,7 +233,7 @@ def misfit_to(shape: Shape, points: FloatArray) -> Misfit:
 
 
 def depth_inside(shape: Shape, profile: Profile) -> float:
-    """How deep the object-facing line lies inside the object at most, mm; 0 where it does not."""
+    """Largest depth of the object-facing line inside the object, mm; 0 where it stays outside."""
     target = _target_line(profile.points)
     along, inside = _beside(shape, target)
     at = np.searchsorted(profile.s, along * (profile.length_mm / target.length))
@@ -258,6 +261,6 @@ def _target_line(points: FloatArray) -> shapely.LineString:
 
 
 def _beside(shape: Shape, target: shapely.LineString) -> tuple[FloatArray, BoolArray]:
-    """Where along the target each point of the facing line lies, and whether beyond neither end."""
+    """Places (N,) along the target of the facing line's points; false where beyond either end."""
     along = np.asarray(shapely.line_locate_point(target, shapely.points(shape.facing)))
     return along, (along > 0.0) & (along < target.length)

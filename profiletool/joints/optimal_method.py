@@ -180,7 +180,7 @@ def _corrected(
     """Correct a choice by a forward model, in numbers that can be built."""
     parameters = parameters_of(choice.chain, profile, choice.limits)
     vector = parameters.pack(PosedChain(choice.chain, choice.pressure, choice.pose))
-    found = correct(
+    corrected = correct(
         forward,
         model,
         parameters,
@@ -190,7 +190,7 @@ def _corrected(
         request.interference_mm,
         say,
     )
-    return found.best.posed
+    return corrected.best.posed
 
 
 def _layout(

@@ -1,4 +1,4 @@
-"""A plan of joints: what either method gives."""
+"""The plan of joints that either method gives."""
 
 from __future__ import annotations
 
@@ -47,5 +47,5 @@ class Plan:
 
     @property
     def trade_off(self) -> TradeOff | None:
-        """What more joints and more pressure bring."""
+        """The gain of more joints and more pressure; None for the paper's method."""
         return None if self.choice is None else self.choice.trade_off

@@ -95,7 +95,7 @@ def test_scores_and_verdicts() -> None:
 def test_a_term_added_in_one_place_counts_for_all_who_ask(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    # A third aim: a distance of 2 mm everywhere, on the mean of both goals 1 mm.
+    # A third term: 2 mm off the object everywhere. With the first one, 1 mm is best.
     terms = misfit.shape_terms
 
     def more(interference_mm: float) -> tuple[Term, ...]:

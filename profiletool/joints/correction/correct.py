@@ -194,24 +194,24 @@ class _Loop(Generic[S]):
         """Go to numbers that can be built, and on from there."""
         if not max(steps.alpha, steps.place, steps.pressure) > 0.0:
             return best
-        surrogate, found = self._surrogate(best), None
+        surrogate, built = self._surrogate(best), None
         tried = list[FloatArray]()
         for _ in range(_MOST_BUILT):
             target, promised = surrogate.built(_step_sizes(best.vector, best.parameters, steps))
             if any(np.allclose(target, other, atol=1e-9) for other in tried):
                 break
-            if found is not None and promised > _WORTH * self._cost(found):
+            if built is not None and promised > _WORTH * self._cost(built):
                 break
             tried.append(target)
             iterate = self._tried(best, target, "in steps that can be built")
             if iterate is None:
                 break
-            if found is None or self._cost(iterate) < self._cost(found):
-                best = found = iterate
+            if built is None or self._cost(iterate) < self._cost(built):
+                best = built = iterate
                 surrogate = self._surrogate(best)
             else:
                 surrogate = surrogate.broyden_update(target, iterate.closest.distance)
-        return best if found is None else found
+        return best if built is None else built
 
     def _cost(self, iterate: Iterate[S]) -> float:
         return float(self._objective.cost(Deviation(iterate.closest.distance)))

@@ -144,7 +144,7 @@ class Parameters:
         return np.concatenate([chain.alpha, F, [place, posed.pressure], base])
 
     def with_end(self, end_mm: float) -> Parameters:
-        """Give the same with another wrapped length at the closed end."""
+        """Parameters with another wrapped length at the closed end, not below the least one."""
         return replace(self, end_mm=max(end_mm, self.limits.end_mm))
 
 

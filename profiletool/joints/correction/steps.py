@@ -1,4 +1,4 @@
-"""The next vector to try by a linear model of the distances: free, or in steps that can be built.
+"""Steps of a correction by a linear model of the distances: free, or in numbers to be built.
 
 Rounding is part of the search: each number is rounded where that costs least, what is still free
 is fitted again, and in the end numbers are moved by single steps and in pairs as long as that

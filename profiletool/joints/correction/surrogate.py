@@ -49,7 +49,7 @@ class Surrogate:
         return self._sought(lambda linear: free_step(linear, reach))
 
     def built(self, step: FloatArray) -> tuple[FloatArray, float]:
-        """Find the same among multiples of ``step`` (size,)."""
+        """Find the best vector among multiples of ``step`` (size,), and the cost it promises."""
         reach = _REACH * self.linear.scale
         # Coarse steps stay next to where the model holds best.
         reach = np.where(step > 0.5 * self.linear.scale, np.minimum(step, reach), reach)
@@ -60,9 +60,9 @@ class Surrogate:
 
         The least change, counted in the numbers' scales, that makes them agree (Broyden 1965).
         """
-        missed = distance - self._near(self._bent(vector), vector).distance
+        error = distance - self._near(self._bent(vector), vector).distance
         way = (vector - self.linear.vector) / self.linear.scale
-        change = np.outer(missed, way / self.linear.scale) / float(way @ way)
+        change = np.outer(error, way / self.linear.scale) / float(way @ way)
         return replace(self, linear=replace(self.linear, jacobian=self.linear.jacobian + change))
 
     def _sought(self, step: Callable[[Linear], FloatArray]) -> tuple[FloatArray, float]:

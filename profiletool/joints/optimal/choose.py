@@ -1,4 +1,4 @@
-"""The joints of an actuator chosen as a whole, by a model: the best that one pressure allows.
+"""The choice of all joints of an actuator together, by a model: the best that a pressure allows.
 
 First the global optimum of a discretisation (`search`), for every number of joints and every
 pressure; then everything continuous is moved until the shape is best (`polish`). The fewest joints
@@ -55,7 +55,7 @@ _SHORTEST_MM = 40.0
 
 @dataclass(frozen=True)
 class TradeOff:
-    """What more joints and more pressure bring.
+    """The gain of more joints and more pressure.
 
     Attributes
     ----------
@@ -143,9 +143,9 @@ def choose(
     for _ in range(_CUTS):
         # What lies farther down than the tube can be long is out of reach whatever it does.
         reached = _first_part(reached, limits.max_length_mm)
-        found = _searches(reached, model, cuts, limits, options)
+        searches = _searches(reached, model, cuts, limits, options)
         goal = goal_of(reached, limits, options.interference_mm)
-        best, polished = _fewest(found, model, goal, options)
+        best, polished = _fewest(searches, model, goal, options)
         excess = best.posed.chain.length - limits.max_length_mm
         if excess <= 0.0:
             break
@@ -154,7 +154,7 @@ def choose(
     count = len(best.posed.chain.openF)
     polished[count - 1] = np.fmin(polished[count - 1], best.misfit.rms_mm)
     at = best.posed
-    trade_off = TradeOff(found[0].pressure, _rms(found, reached), polished)
+    trade_off = TradeOff(searches[0].pressure, _rms(searches, reached), polished)
     if reached is not profile:
         best = judge(at, model, goal_of(profile, limits, options.interference_mm))
     return Choice(
@@ -182,10 +182,10 @@ def _searches(
     """Search on the profile, and farther off it where that does not do."""
     room = int(limits.max_length_mm / (cuts.min() + limits.wrap_mm)) + 1
     most = min(options.count or MOST_JOINTS, room)
-    found: list[SearchResult] = []
+    searches: list[SearchResult] = []
     for grid, enough in ((FINE, 2.0 * options.tolerance_mm), (WIDE, _FAR_MM), (FAR, np.inf)):
-        found.append(search(profile, model, cuts, limits, options.interference_mm, grid, most))
-        rms = _rms(found, profile)
+        searches.append(search(profile, model, cuts, limits, options.interference_mm, grid, most))
+        rms = _rms(searches, profile)
         if (rms[:, -1] if options.count else rms).min() <= enough:
             break
     if not np.isfinite(rms).any():
@@ -193,13 +193,13 @@ def _searches(
             f"no joints of this tube follow the profile at {BAR_PER_MPA * limits.pressure[1]:.2f} "
             "bar: it turns too fast; take a longer cut, more pressure or another stretch"
         )
-    return found
+    return searches
 
 
-def _rms(found: list[SearchResult], profile: Profile) -> FloatArray:
+def _rms(searches: list[SearchResult], profile: Profile) -> FloatArray:
     """Best RMS of several searches, on the pressures of the first: (P, J)."""
-    best = found[0].cost.copy()
-    for other in found[1:]:
+    best = searches[0].cost.copy()
+    for other in searches[1:]:
         # All end at the highest pressure.
         top = best[-len(other.cost) :]
         np.minimum(top, other.cost[-len(top) :], out=top)
@@ -207,13 +207,13 @@ def _rms(found: list[SearchResult], profile: Profile) -> FloatArray:
 
 
 def _fewest(
-    found: list[SearchResult], model: Model, goal: Goal, options: ChoiceOptions
+    searches: list[SearchResult], model: Model, goal: Goal, options: ChoiceOptions
 ) -> tuple[Polished, FloatArray]:
     """Polish numbers of joints from below until one lies within the tolerance.
 
     Where none does, one more joint must bring its worth.
     """
-    rms = _rms(found, goal.profile).min(axis=0)
+    rms = _rms(searches, goal.profile).min(axis=0)
     polished = np.full(len(rms), np.nan)
     least, worth = float(rms.min()), _WORTH * options.tolerance_mm
     if options.count is not None:
@@ -224,16 +224,16 @@ def _fewest(
         numbers = np.flatnonzero(hopeful & useful)[:_MOST_POLISHED] + 1
     best: dict[int, Polished] = {}
     for n in (int(n) for n in numbers):
-        best[n] = _best_of(found, model, goal, n, rivals=1, runs=_QUICK)
+        best[n] = _best_of(searches, model, goal, n, rivals=1, runs=_QUICK)
         near = best[n].misfit.rms_mm <= _NEAR * options.tolerance_mm
         if near:
-            best[n] = _best_of(found, model, goal, n, _RIVALS)
+            best[n] = _best_of(searches, model, goal, n, _RIVALS)
         polished[n - 1] = best[n].misfit.rms_mm
         good = is_good(best[n].misfit, best[n].depth, options.tolerance_mm, options.interference_mm)
         if near and good:
             return best[n], polished
     chosen = min(best, key=lambda n: _score(best[n], goal) + worth * n)
-    full = _best_of(found, model, goal, chosen, _RIVALS)
+    full = _best_of(searches, model, goal, chosen, _RIVALS)
     polished[chosen - 1] = full.misfit.rms_mm
     return full, polished
 
@@ -249,15 +249,22 @@ def _score(polished: Polished, goal: Goal) -> float:
 
 
 def _best_of(
-    found: list[SearchResult], model: Model, goal: Goal, joints: int, rivals: int, runs: int = _RUNS
+    searches: list[SearchResult],
+    model: Model,
+    goal: Goal,
+    joints: int,
+    rivals: int,
+    runs: int = _RUNS,
 ) -> Polished:
     """Polish the best paths of so many joints, of all searches and pressures."""
-    cost = [(c, k, p) for k, one in enumerate(found) for p, c in enumerate(one.cost[:, joints - 1])]
-    tried = []
+    cost = [
+        (c, k, p) for k, one in enumerate(searches) for p, c in enumerate(one.cost[:, joints - 1])
+    ]
+    candidates = []
     for _, k, pressure in sorted(c for c in cost if np.isfinite(c[0]))[:rivals]:
-        start = found[k].posed_chain(pressure, joints, model, goal.profile, goal.limits)
-        tried.append(polish(start, model, goal, runs))
-    return min(tried, key=lambda polished: _score(polished, goal))
+        start = searches[k].posed_chain(pressure, joints, model, goal.profile, goal.limits)
+        candidates.append(polish(start, model, goal, runs))
+    return min(candidates, key=lambda polished: _score(polished, goal))
 
 
 def _swapped(best: Polished, model: Model, goal: Goal, cuts: FloatArray) -> Polished:
@@ -265,15 +272,15 @@ def _swapped(best: Polished, model: Model, goal: Goal, cuts: FloatArray) -> Poli
     for _ in range(_SWAPS):
         chain = best.posed.chain
         bound = at_bound(best.posed, goal.limits)
-        tried = []
+        candidates = []
         for k in np.flatnonzero(bound):
             index = int(np.argmin(np.abs(cuts - chain.openF[k]))) - int(bound[k])
             if 0 <= index < len(cuts):
                 openF = chain.openF.copy()
                 openF[k] = cuts[index]
                 posed = replace(best.posed, chain=replace(chain, openF=openF))
-                tried.append(polish(_fitting(posed, goal.limits), model, goal, _QUICK))
-        better = min(tried, key=lambda polished: _score(polished, goal), default=best)
+                candidates.append(polish(_fitting(posed, goal.limits), model, goal, _QUICK))
+        better = min(candidates, key=lambda polished: _score(polished, goal), default=best)
         if _score(better, goal) >= _score(best, goal) - 1e-6:
             break
         best = better

@@ -1,4 +1,4 @@
-"""What one joint between two lines costs: the edges of the choice of joints.
+"""Costs of one joint between two lines: the edges of the choice of joints.
 
 Glossary
 --------
@@ -92,7 +92,10 @@ class _Pairs:
 
 
 def summed_cost(lines: CandidateLines, objective: Objective) -> FloatArray:
-    """Cost of a line at all points up to each: (N, M + 1)."""
+    """Cost of every line at all points before each: (N, M + 1) mm³, the first column 0.
+
+    In single precision, as the edges' costs are; the sums in double.
+    """
     cost = objective.density(Deviation(-lines.out.astype(np.float32))) * lines.weight
     total = np.zeros((cost.shape[0], cost.shape[1] + 1))
     np.cumsum(cost, axis=1, out=total[:, 1:])
@@ -195,7 +198,21 @@ def price(
     wrap_mm: float,
     objective: Objective,
 ) -> Priced:
-    """Find the cheapest joint of every edge at the pressure of ``bends``."""
+    """Find the cheapest joint of every edge at one pressure.
+
+    Parameters
+    ----------
+    edges : Edges
+    lines : CandidateLines
+        Those of the edges.
+    bends : Bends
+        Of the edges' sense, at the pressure.
+    openF : (K,) array, mm
+        The cuts of ``bends``.
+    wrap_mm : float
+        Least wrapped length between two windows.
+    objective : Objective
+    """
     cost = np.full(len(edges.turn), np.inf)
     cut = np.zeros(len(edges.turn), dtype=np.intp)
     sense = np.float32(edges.sense)

@@ -34,7 +34,7 @@ _FREE_HEADINGS, _FREE_OFFSETS = 7, 5  # base lines where the base is free
 
 @dataclass(frozen=True)
 class Discretisation:
-    """How finely the choice of joints looks.
+    """Spacings of the grid that joints are chosen on.
 
     Attributes
     ----------
@@ -85,7 +85,15 @@ class CandidateLines:
 
 
 def lines_of(profile: Profile, limits: Limits, grid: Discretisation) -> CandidateLines:
-    """Lay the lines of a discretisation on a profile."""
+    """Lay the lines of a discretisation on a profile.
+
+    Parameters
+    ----------
+    profile : Profile
+    limits : Limits
+        They say whether, and how far, the base may leave the profile's start tangent.
+    grid : Discretisation
+    """
     count = max(round(profile.length_mm / grid.step_mm), 2)
     step = profile.length_mm / count
     s = step * np.arange(count + 1 + int(_BEYOND_MM / step), dtype=float)

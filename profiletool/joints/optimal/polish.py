@@ -1,4 +1,4 @@
-"""Continuous least squares on everything about an actuator but its cuts' lengths and senses."""
+"""Polish of an actuator: least squares on all its numbers but the cuts' lengths and senses."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _BOUND_SHARE = 1e-3  # of a range: so near is at the bound
 
 @dataclass(frozen=True)
 class Goal:
-    """What a polish aims at.
+    """Target and limits of a polish.
 
     Attributes
     ----------
@@ -87,7 +87,7 @@ def polish(posed: PosedChain, model: Model, goal: Goal, runs: int = 12) -> Polis
     parameters = parameters_of(posed.chain, profile, goal.limits)
     parameters = parameters.with_end(parameters.end_mm + _SPARE_MM)
     problem = _Problem(parameters, model, goal)
-    found = descend(
+    vector = descend(
         problem.residuals,
         problem.jacobian,
         parameters.pack(posed),
@@ -95,7 +95,7 @@ def polish(posed: PosedChain, model: Model, goal: Goal, runs: int = 12) -> Polis
         parameters.scale(),
         runs,
     )
-    best = parameters.unpack(found)
+    best = parameters.unpack(vector)
     return judge(cut_end(best, model, goal), model, goal)
 
 
@@ -122,7 +122,7 @@ def judge(posed: PosedChain, model: Model, goal: Goal) -> Polished:
 
 
 def at_bound(posed: PosedChain, limits: Limits) -> FloatArray:
-    """Tell where alpha ends at a bound: -1 at the least, +1 at the largest, 0 elsewhere; (n,)."""
+    """Signs of the bounds that alpha ends at: -1 the least, +1 the largest, 0 none; (n,)."""
     low, high = limits.alpha
     near = _BOUND_SHARE * (high - low)
     alpha = posed.chain.alpha

@@ -53,7 +53,15 @@ def theta_table(formula: Formula, material: TubeSpec) -> Table:
 
 
 def joint_rules(table: Table, material: TubeSpec, tolerance_mm: float) -> Rules:
-    """Say what a joint can do by the table."""
+    """Rules for joints by the table.
+
+    Parameters
+    ----------
+    table : Table
+    material : TubeSpec
+    tolerance_mm : float
+        How far the polygon may lie off the profile.
+    """
     return Rules(
         radius_mm=material.radius_mm,
         openF_mm=np.array(table.openF_mm),
@@ -71,6 +79,18 @@ def lay_out(
 
     A turn that no joint reaches is cut back to what one does, so that the best attempt can be
     drawn; the sectors keep what is missing.
+
+    Parameters
+    ----------
+    profile : Profile
+    sectors : sequence of BendingSector, in order along the profile
+    table : Table
+    material : TubeSpec
+
+    Raises
+    ------
+    formula.errors.OutOfRange
+        When no pressure of the table serves all joints.
     """
     openF = [sector.openF_mm for sector in sectors]
     most = table.theta_deg.max(axis=(0, 2))[np.searchsorted(table.openF_mm, openF)]

@@ -1,4 +1,4 @@
-"""Candidate joints: what lies between one break point of a profile and every later one.
+"""Candidate joints of the paper's method: one between every two break points of a profile.
 
 Glossary
 --------
@@ -29,7 +29,7 @@ _PER_MM = 10.0  # cost of length that is missing for a cut
 
 @dataclass(frozen=True)
 class Rules:
-    """What a joint can do.
+    """Rules that a joint keeps to.
 
     Attributes
     ----------
@@ -142,7 +142,7 @@ def _cuts(measured: FloatArray, bend: FloatArray, rules: Rules) -> tuple[FloatAr
 def _vertices(
     profile: Profile, here: int, later: IntArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Where the line at ``here`` meets the later ones: (J, 2); distances along both lines to it."""
+    """Points where the line at ``here`` meets later ones, (J, 2); distances along both, (J,)."""
     along = direction(profile.heading[here])
     other = direction(profile.heading[later])
     across = profile.points[later] - profile.points[here]
@@ -157,7 +157,7 @@ def _vertices(
 def _deviation(
     profile: Profile, indices: IntArray, vertex: FloatArray, radius: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """How far the polygons from indices[0] on lie off the profile, and inside the object: (J,).
+    """Distances of the polygons from indices[0] on off the profile, and inside the object: (J,).
 
     Toward the object the polygon has a vertex. Away from it the hinge is on the far side and the
     object-facing line runs through the joint as an arc, of the given radius.
