@@ -105,7 +105,8 @@ def from_json(data: bytes) -> Lines:
             for name in ("facing", "far")
         )
         tree = body["chain"]
-        chain = Chain(*(np.array(tree[name], dtype=float) for name in _CHAIN), tree["length"])
+        centre, openF, alpha, center = (np.array(tree[name], dtype=float) for name in _CHAIN)
+        chain = Chain(centre, openF, alpha, center, tree["length"])
         return Lines(body["name"], chain, pressure, along, facing, far, body["ended"])
     except (KeyError, TypeError, ValueError) as error:
         raise ValueError("this is no run of lines") from error
