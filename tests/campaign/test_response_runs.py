@@ -17,6 +17,7 @@ from profiletool.campaign.response_kind import RESPONSE_RUN, from_json, key, run
 from profiletool.campaign.response_runs import run_group
 from profiletool.campaign.response_tasks import actuators, pairs, singles
 from profiletool.campaign.store import Store
+from profiletool.verify.run import inflate
 
 RADIUS = 10.0
 
@@ -152,17 +153,25 @@ def test_real_lines_are_the_same_bit_for_bit_on_processes(tmp_path):
 
 
 def test_what_does_not_converge(monkeypatch):
-    asked = []
+    asked = replace(a_task(), pressures_bar=(0.2, 0.4))
 
-    def stuck(actuator, pressures, *_, **__):
-        asked.append(pressures)
-        raise NotConverged("", (), 0.05 if len(asked) == 1 else 0.0)
+    def stuck(actuator, pressures, *rest, **more):
+        whole = inflate(actuator, pressures[:1], *rest, **more)
+        why = "no equilibrium found beyond 0.31 bar"
+        return replace(whole, verification=replace(whole.verification, failure=why))
 
     monkeypatch.setattr(response_kind, "inflate", stuck)
-    lines = run(replace(a_task(), pressures_bar=(0.2, 0.4, 0.6)))
-    assert asked == [(0.2, 0.4, 0.6), (0.2, 0.4)]
+    reached = run(asked)
+    assert reached.pressure.tolist() == [0.02]
+    assert reached.ended == "no equilibrium found beyond 0.31 bar"
+
+    def never(*_, **__):
+        raise NotConverged("", (), 0.0)
+
+    monkeypatch.setattr(response_kind, "inflate", never)
+    lines = run(asked)
     assert len(lines.pressure) == 0
-    assert lines.ended == "not converged beyond 0.00 bar"
+    assert lines.ended == "no equilibrium found beyond 0.00 bar"
 
 
 @pytest.mark.slow
