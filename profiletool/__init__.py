@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from profiletool.pipeline import Result
     from profiletool.records.design import Design, Joint
     from profiletool.records.picture import Picture
-    from profiletool.records.profile import Drawing, Profile
+    from profiletool.records.profile import DrawnLine, Profile
     from profiletool.records.request import Request, TubeSpec
     from profiletool.subject.find import Subject
     from profiletool.verify.check import Check
@@ -38,7 +38,7 @@ __all__ = [
     "Check",
     "Derivation",
     "Design",
-    "Drawing",
+    "DrawnLine",
     "Joint",
     "Picture",
     "Plan",
@@ -64,7 +64,7 @@ _HOMES = {
     "Check": "verify.check",
     "Derivation": "campaign.derive",
     "Design": "records.design",
-    "Drawing": "records.profile",
+    "DrawnLine": "records.profile",
     "Joint": "records.design",
     "Picture": "records.picture",
     "Plan": "joints.plan",

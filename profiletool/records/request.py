@@ -11,7 +11,7 @@ from profiletool.records.side import Side
 if TYPE_CHECKING:
     from formula.rubber import RubberLaw
     from profiletool.records.picture import Picture
-    from profiletool.records.profile import Drawing, Profile
+    from profiletool.records.profile import DrawnLine, Profile
 
 
 Box = tuple[float, float, float, float]  # x, y, width, height
@@ -123,4 +123,4 @@ class Request:
     extrapolate: bool = False
     verify: bool = True
     refine: bool = True
-    given: Picture | Drawing | Profile | None = None
+    given: Picture | DrawnLine | Profile | None = None

@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from profiletool import (
-    Drawing,
+    DrawnLine,
     Profile,
     Request,
     design,
@@ -71,7 +71,7 @@ def test_points_are_a_drawn_line() -> None:
     assert closed.length_mm == pytest.approx(expected, abs=1.0)
     open_ = find_subject(EGG[100:300]).profile
     assert open_.outline is None
-    drawing = find_subject(Drawing(EGG, closed=True), side="right").profile
+    drawing = find_subject(DrawnLine(EGG, closed=True), side="right").profile
     assert drawing.length_mm == pytest.approx(closed.length_mm, abs=1e-6)
 
 
