@@ -34,6 +34,15 @@ class Result(Draft):
 
     Attributes
     ----------
+    request : Request
+    subject : Subject
+    formula : Formula
+    plan : Plan
+    design : Design
+    shape : Shape
+        The tube as the formula bends it.
+    check : Check or None
+        The finite-element run; None where none was asked for.
     reasons : tuple of str
         Why the design is infeasible; none where it is feasible.
     misses : tuple of Missed

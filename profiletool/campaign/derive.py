@@ -35,6 +35,9 @@ class CampaignPlan:
 
     Attributes
     ----------
+    diameter_mm, wall_mm : float
+        Of the tube.
+    rubber : Rubber
     alpha_deg, openF_mm, pressures_bar : tuple of float
         Ascending.
     model : {"converged", "paper"}

@@ -28,10 +28,21 @@ _WRONG_SCALE = {
 
 @dataclass(frozen=True)
 class Subject:
-    """The object that a design is for; picture, silhouette and origin only where there is one.
+    """The object that a design is for.
 
-    ``origin_px`` is the object frame's origin once the picture is turned by ``rotated_deg``,
-    counter-clockwise about its middle. ``notes`` say what the user should know of how it was seen.
+    Attributes
+    ----------
+    picture : Picture or None
+    silhouette : Silhouette or None
+        None, as the picture, for a drawing.
+    scale : Scale
+    origin_px : (x, y) or None
+        The object frame's origin in the picture once that is turned.
+    profile : Profile
+    rotated_deg : float
+        By which the picture is turned, counter-clockwise about its middle.
+    notes : tuple of str
+        What the user should know of how the picture was read.
     """
 
     picture: Picture | None
