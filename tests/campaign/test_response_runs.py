@@ -85,7 +85,7 @@ def test_lines_come_back_to_the_last_bit():
     again = from_json(to_json(arc))
     assert same(again, arc)
     assert (again.name, again.ended) == ("arc", "limit point at 1.00 bar")
-    for name in ("centre", "openF", "alpha", "sense"):
+    for name in ("centre", "openF", "alpha", "alpha_center"):
         assert_array_equal(getattr(again.chain, name), getattr(arc.chain, name))
     assert again.chain.length == 81.0
     nothing = RESPONSE_RUN.died(a_task())
