@@ -17,10 +17,8 @@ from profiletool.records.units import BAR_PER_MPA
 from profiletool.verify.run import inflate, reason, shortly
 
 SCHEMA = "profiletool.response_run/1"  # to be raised where `run` reads other numbers off a solution
-_CHAIN, _LINES = (
-    ("centre", "openF", "alpha", "alpha_center"),
-    ("pressure", "along", "facing", "far"),
-)
+_CHAIN = ("centre", "openF", "alpha", "alpha_center")
+_LINES = ("pressure", "along", "facing", "far")
 
 
 def run(task: ResponseTask) -> Lines:
