@@ -43,10 +43,17 @@ def files_of(
     Parameters
     ----------
     result : Result
+        Of `profiletool.design`.
     wish : Wish
-        What the template shall be.
+        Options of the cut template: variant, kerf in mm, date.
     paper : {"a4", "letter"}
-        Of the PDFs.
+        Page of the PDFs.
+
+    Returns
+    -------
+    dict of str to bytes
+        Files of finite elements and the mask of a picture only where there are such. The same
+        result gives the same bytes of design.json and template.dxf.
     """
     result = _in_flags(result)
     design, checked = result.design, result.check

@@ -51,6 +51,16 @@ def from_json(text: str | bytes, file: str) -> Design:
 def load_design(path: Path) -> Design:
     """Read a design.json.
 
+    Parameters
+    ----------
+    path : Path
+        The file, at most 5 MB.
+
+    Returns
+    -------
+    Design
+        Equal to the one that was written, but for the rounding to six decimals.
+
     Raises
     ------
     UnreadableInput
