@@ -22,20 +22,23 @@ from fem.material import PAPER_RUBBER, MooneyRivlin
 from formula.files import load_formula, parse_formula, read_bytes, read_tree
 from formula.fit import errors_of
 from formula.theta import COEFFICIENTS, theta_deg
-from profiletool.campaign.derive import Base, Derivation, Plan, derive, formula_of
+from profiletool.campaign.derive import Base, CampaignPlan, Derivation, derive, formula_of
 from profiletool.campaign.formula_file import formula_file
-from profiletool.campaign.runs import Outcome, Task
+from profiletool.campaign.runs import JOINT_RUN, Outcome, Task
 from profiletool.campaign.store import Store, default_folder
 from profiletool.campaign.workers import run_all
 from profiletool.rubber.presets import PRESETS, Rubber
 
-PLAN = Plan(
+JointStore = Store[Task, Outcome]
+PLAN = CampaignPlan(
     20.0, 2.0, PRESETS["paper"], (84.0, 108.0, 120.0, 132.0, 156.0), (6.0, 8.0, 10.0, 12.0, 14.0),
     tuple(round(0.2 * k, 9) for k in range(1, 11)),
 )  # fmt: skip
 
 
-def campaign(plan: Plan, store: Store, workers: int = 2, base: Base | None = None) -> Derivation:
+def campaign(
+    plan: CampaignPlan, store: JointStore, workers: int = 2, base: Base | None = None
+) -> Derivation:
     """Derive with so many processes."""
 
     def runs(tasks: Sequence[Task]) -> list[Outcome]:
@@ -50,7 +53,7 @@ def speed() -> None:
     for workers in (2, 1, 2, 1):
         with tempfile.TemporaryDirectory() as folder:
             begun = time.perf_counter()
-            campaign(PLAN, Store(Path(folder)), workers)
+            campaign(PLAN, Store(Path(folder), JOINT_RUN), workers)
             seconds = time.perf_counter() - begun
         taken[workers] = min(seconds, taken.get(workers, np.inf))
         print(f"  25 runs of 10 pressures, {workers} workers: {seconds:.1f} s", flush=True)
@@ -74,7 +77,7 @@ def against_formula_9(found: Derivation) -> None:
     )
 
 
-def similar(store: Store, known: Derivation) -> None:
+def similar(store: JointStore, known: Derivation) -> None:
     """Compare campaigns from five runs with whole ones."""
     base = Base(parse_formula(formula_file(known, "default"), "default"), known.data)
     law = PAPER_RUBBER
@@ -103,7 +106,7 @@ def similar(store: Store, known: Derivation) -> None:
         )
 
 
-def as_the_paper(store: Store) -> None:
+def as_the_paper(store: JointStore) -> None:
     """Compare the refitted coefficients of the paper's model with its Table 3."""
     found = campaign(replace(PLAN, model="paper"), store)
     assert found.paper is not None
@@ -131,7 +134,7 @@ def main() -> None:
     print(machine(), flush=True)
     if options.speed:
         speed()
-    store = Store(options.runs)
+    store = Store(options.runs, JOINT_RUN)
     known = campaign(PLAN, store)
     against_formula_9(known)
     if options.similar:

@@ -20,8 +20,9 @@ if TYPE_CHECKING:
     from formula.errors import BadFormula, OutOfRange
     from formula.files import load_formula, shipped
     from formula.inverse import alpha_deg, theta_range_deg
+    from formula.rubber import RubberLaw
     from formula.table import Assignment, Table, assign, make_table
-    from formula.theta import Formula, RubberLaw, theta_deg
+    from formula.theta import Formula, theta_deg
 
 __all__ = [
     "Assignment",
@@ -52,7 +53,7 @@ _HOMES = {
     "assign": "table",
     "make_table": "table",
     "Formula": "theta",
-    "RubberLaw": "theta",
+    "RubberLaw": "rubber",
     "theta_deg": "theta",
 }
 

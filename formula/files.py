@@ -17,7 +17,8 @@ import numpy as np
 
 from formula.data import Data, FloatArray
 from formula.errors import BadFormula
-from formula.theta import COEFFICIENTS, Formula, RubberLaw, Terms, paper_terms
+from formula.rubber import RubberLaw, read_rubber
+from formula.theta import COEFFICIENTS, Formula, Terms, paper_terms
 
 SCHEMA, POLYNOMIAL = "profiletool.formula/1", "profiletool.formula/2"
 _ABSURD = 1e9
@@ -176,15 +177,10 @@ def _ascending(tree: dict[str, Any], key: str, file: str) -> FloatArray:
 
 def _rubber(domain: dict[str, Any], file: str) -> RubberLaw:
     tree = _mapping(domain, "rubber", file)
-    rubber = RubberLaw(
-        str(tree.get("name", "")),
-        _number(tree, "C10_MPa", file),
-        _number(tree, "C01_MPa", file),
-        _number(tree, "K_MPa", file),
-    )
-    if not rubber.sane:
-        raise BadFormula(f"{file}: no rubber can have such constants")
-    return rubber
+    try:
+        return read_rubber(tree)
+    except ValueError as error:
+        raise BadFormula(f"{file}: {error}") from error
 
 
 def _terms(value: object, file: str) -> Terms:

@@ -9,37 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from formula.errors import OutOfRange
+from formula.rubber import RubberLaw
 
 COEFFICIENTS = ("c11", "c12", "c13", "c21", "c22", "c23", "c31", "c32")
 Terms = tuple[tuple[tuple[float, float, float], ...], ...]
-
-
-@dataclass(frozen=True)
-class RubberLaw:
-    """The law of the rubber that a formula holds for (Mooney-Rivlin).
-
-    Attributes
-    ----------
-    name : str
-        Name of the rubber, such as that of a preset.
-    C10_MPa, C01_MPa, K_MPa : float
-        Constants of the law and bulk modulus, MPa.
-    """
-
-    name: str
-    C10_MPa: float
-    C01_MPa: float
-    K_MPa: float
-
-    @property
-    def sane(self) -> bool:
-        """Whether a rubber can have such constants."""
-        stiffness = self.C10_MPa + self.C01_MPa
-        return (
-            min(self.C10_MPa, self.C01_MPa) >= 0.0
-            and 1e-4 <= stiffness <= 1e3
-            and stiffness <= self.K_MPa <= 1e6
-        )
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from formula.theta import Formula, theta_deg
 from profiletool.bending.kinematics import Bend, deform
-from profiletool.campaign.derive import Derivation, check_plan, derive, load_base
-from profiletool.campaign.derive import Plan as CampaignPlan
+from profiletool.campaign.derive import CampaignPlan, Derivation, check_plan, derive, load_base
+from profiletool.campaign.runs import JOINT_RUN
 from profiletool.campaign.store import Store, default_folder
 from profiletool.campaign.workers import run_all
 from profiletool.errors import UsageError
@@ -225,7 +225,7 @@ def derive_formula(
     """
     check_plan(plan)
     known = None if base is None else load_base(base)
-    store = Store(runs or default_folder())
+    store = Store(runs or default_folder(), JOINT_RUN)
     return derive(
         plan,
         lambda tasks: run_all(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -25,6 +26,7 @@ from profiletool.verdict.attempt import Attempt
 from profiletool.verdict.missed import Missed
 from profiletool.verdict.notes import notes_of
 from profiletool.verdict.reasons import misses_of, reasons_of
+from profiletool.verdict.summary import headline, summary
 from profiletool.verify.bench import FeBench
 from profiletool.verify.check import Check, check
 from profiletool.verify.run import Progress
@@ -33,7 +35,7 @@ from profiletool.verify.sensitivity import sensitivity_of
 _STABLE_SHARE = 0.97  # of the pressure at which FE loses its stability
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Result:
     """A design with what it was made from, and what was asked for.
 
@@ -50,6 +52,18 @@ class Result:
     shape: Shape
     check: Check | None
     misses: tuple[Missed, ...]
+
+    def __str__(self) -> str:
+        """Joints, distances off the profile, verdict and notes."""
+        return summary(self.design)
+
+    def __repr__(self) -> str:
+        """One line, as the arrays within would fill pages."""
+        return f"<Result {headline(self.design)}>"
+
+    def _repr_html_(self) -> str:
+        """Text for a notebook's cell."""
+        return f"<pre>{html.escape(str(self))}</pre>"
 
 
 def run(request: Request, say: Callable[[str], None], progress: Progress | None = None) -> Result:

@@ -9,7 +9,7 @@ from itertools import product
 import numpy as np
 
 from fem.errors import BadGeometry
-from fem.material import MooneyRivlin
+from fem.material import Law
 from formula.data import Data
 from formula.errors import BadFormula
 from formula.files import campaign_of, parse_formula, read_bytes
@@ -18,16 +18,19 @@ from formula.similar import carried, corrected, correction_runs
 from formula.theta import Formula, Terms, theta_deg
 from profiletool.campaign.runs import Model, Outcome, Task, actuator_of
 from profiletool.errors import NotVerified, UnreadableInput, UsageError
+from profiletool.records.rubber import law_of
 from profiletool.records.units import FloatArray
-from profiletool.rubber.presets import Rubber, law_of
+from profiletool.rubber.presets import Rubber
+from profiletool.rubber.uniaxial import uniaxial_stress
 
 RunAll = Callable[[Sequence[Task]], list[Outcome]]
 _MOST_RUNS = 10_000
 _SAME = 0.02  # how far shape and kind of rubber may differ and still count as the same
+_PULLED = np.array([1.25, 2.0, 3.0])  # stretches at which kinds of rubber are compared
 
 
 @dataclass(frozen=True)
-class Plan:
+class CampaignPlan:
     """What a formula is wanted for.
 
     Attributes
@@ -73,7 +76,7 @@ class Derivation:
 
     Attributes
     ----------
-    plan : Plan
+    plan : CampaignPlan
     base : Base or None
     made : Data
         The angles of the runs that were made.
@@ -91,7 +94,7 @@ class Derivation:
     chosen : Candidate
     """
 
-    plan: Plan
+    plan: CampaignPlan
     base: Base | None
     made: Data
     data: Data
@@ -124,7 +127,7 @@ def load_base(name: str) -> Base:
     return Base(formula, campaign)
 
 
-def derive(plan: Plan, run_all: RunAll, base: Base | None = None) -> Derivation:
+def derive(plan: CampaignPlan, run_all: RunAll, base: Base | None = None) -> Derivation:
     """Run what has to be run, and fit.
 
     Raises
@@ -164,7 +167,7 @@ def derive(plan: Plan, run_all: RunAll, base: Base | None = None) -> Derivation:
     )
 
 
-def formula_of(plan: Plan, terms: Terms) -> Formula:
+def formula_of(plan: CampaignPlan, terms: Terms) -> Formula:
     """Make a formula of terms, with the range that the campaign covers."""
     return Formula(
         "", "", "", terms, plan.diameter_mm, plan.wall_mm,
@@ -174,7 +177,7 @@ def formula_of(plan: Plan, terms: Terms) -> Formula:
     )  # fmt: skip
 
 
-def check_plan(plan: Plan) -> None:
+def check_plan(plan: CampaignPlan) -> None:
     """Refuse a tube or a cut that cannot be, before anything is run.
 
     Raises
@@ -191,7 +194,7 @@ def check_plan(plan: Plan) -> None:
             raise UsageError(str(error)) from error
 
 
-def _guess(plan: Plan, base: Base, axes: Sequence[FloatArray]) -> FloatArray:
+def _guess(plan: CampaignPlan, base: Base, axes: Sequence[FloatArray]) -> FloatArray:
     law, known = plan.rubber.law, law_of(base.formula.rubber)
     guess = carried(
         base.data, axes[0], axes[1], axes[2],
@@ -213,12 +216,13 @@ def _guess(plan: Plan, base: Base, axes: Sequence[FloatArray]) -> FloatArray:
     return guess
 
 
-def similar(plan: Plan, base: Base) -> bool:
+def similar(plan: CampaignPlan, base: Base) -> bool:
     """Whether the tube and the kind of rubber are those of a known campaign but for scale."""
 
-    def numbers(diameter: float, wall: float, law: MooneyRivlin) -> tuple[float, ...]:
-        stiffness = law.C10 + law.C01
-        return wall / diameter, 1.0 + law.C01 / stiffness, law.K / stiffness
+    def numbers(diameter: float, wall: float, law: Law) -> tuple[float, ...]:
+        # Mooney's plot, stress / (lam - lam^-2) over the stiffness, tells laws apart.
+        plot = uniaxial_stress(law, _PULLED) / (_PULLED - _PULLED**-2.0) / law.shear_modulus
+        return wall / diameter, *plot.tolist(), law.bulk_modulus / law.shear_modulus
 
     known = base.formula
     pairs = zip(
@@ -229,7 +233,7 @@ def similar(plan: Plan, base: Base) -> bool:
     return all(abs(a / b - 1.0) <= _SAME for a, b in pairs)
 
 
-def _predictor(plan: Plan, terms: Terms) -> Callable[..., FloatArray]:
+def _predictor(plan: CampaignPlan, terms: Terms) -> Callable[..., FloatArray]:
     formula = formula_of(plan, terms)
 
     def predict(alpha: FloatArray, openF: FloatArray, P: FloatArray) -> FloatArray:

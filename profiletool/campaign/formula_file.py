@@ -26,9 +26,8 @@ def formula_file(found: Derivation, name: str) -> bytes:
             "wall_mm": plan.wall_mm,
             "rubber": {
                 "name": plan.rubber.name,
-                "C10_MPa": law.C10,
-                "C01_MPa": law.C01,
-                "K_MPa": law.K,
+                "law": law.name,
+                "constants": dict(law.constants),
             },
             "alpha_closed_deg": [plan.alpha_deg[0], plan.alpha_deg[-1]],
             "openF_mm": [plan.openF_mm[0], plan.openF_mm[-1]],

@@ -2,27 +2,23 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
-from functools import cache
-from importlib import resources
-from importlib.resources.abc import Traversable
 from typing import Literal
 
 import numpy as np
 
-import fem
 from fem.actuator import Actuator, chain
 from fem.errors import FemError, NotConverged
 from fem.gauze import PAPER_GAUZE, Gauze
 from fem.loadpath import DEFAULT_OPTIONS, Options
-from fem.material import MooneyRivlin
+from fem.material import Law
 from fem.measure import Sector
 from fem.meshsize import DEFAULT_MESH, PAPER_MESH, MeshSize
 from fem.solution import Solution, State
 from fem.solver import solve
+from profiletool.campaign.keys import key_of, seal, unseal
+from profiletool.campaign.kind import RunKind
 from profiletool.records.units import BAR_PER_MPA
 
 Model = Literal["converged", "paper"]
@@ -42,7 +38,7 @@ class Task:
     openF_mm, alpha_deg : float
         Axial length of the cut, and extent of the uncut sector.
     diameter_mm, wall_mm : float
-    rubber : MooneyRivlin
+    rubber : fem.material.Law
         MPa.
     pressures_bar : tuple of float
         Rising, above 0.
@@ -60,7 +56,7 @@ class Task:
     alpha_deg: float
     diameter_mm: float
     wall_mm: float
-    rubber: MooneyRivlin
+    rubber: Law
     pressures_bar: tuple[float, ...]
     model: Model = "converged"
 
@@ -99,6 +95,9 @@ class Outcome:
     dx_mm: tuple[float, ...]
     dy_mm: tuple[float, ...]
     failure: str | None
+
+
+DIED = Outcome((), (), (), (), "its process died")
 
 
 @dataclass(frozen=True)
@@ -142,36 +141,18 @@ def key(task: Task) -> str:
     """Name a run by all that its outcome depends on, the model's own source files included."""
     asked = {
         "schema": SCHEMA,
-        "sources": _model_sources(),
         "openF_mm": float(task.openF_mm),
         "alpha_deg": float(task.alpha_deg),
         "diameter_mm": float(task.diameter_mm),
         "wall_mm": float(task.wall_mm),
-        "rubber": {name: float(value) for name, value in asdict(task.rubber).items()},
+        "rubber": {"law": task.rubber.name, **task.rubber.constants},
         "pressures_bar": [float(p) for p in task.pressures_bar],
         "model": task.model,
         "settings": asdict(_SETTINGS[task.model]),
         "root": _ROOT,
         "plug": _PLUG,
     }
-    return hashlib.sha256(_canonical(asked)).hexdigest()
-
-
-@cache
-def _model_sources() -> str:
-    return hash_sources(resources.files(fem))
-
-
-def hash_sources(package: Traversable) -> str:
-    """Hash the source files of a package and its subpackages, however their lines end."""
-    digest = hashlib.sha256()
-    for file in sorted(package.iterdir(), key=lambda entry: entry.name):
-        if file.name.endswith(".py"):
-            code = file.read_bytes().replace(b"\r\n", b"\n")
-            digest.update(f"{file.name} {len(code)}\n".encode() + code)
-        elif file.is_dir() and file.name != "__pycache__":
-            digest.update(f"{file.name}/ {hash_sources(file)}\n".encode())
-    return digest.hexdigest()
+    return key_of(asked)
 
 
 def run(task: Task) -> Outcome:
@@ -244,9 +225,7 @@ def rigid_motion(
 
 def to_json(outcome: Outcome) -> bytes:
     """Write an outcome, with a checksum; the same outcome gives the same bytes."""
-    body = asdict(outcome)
-    checksum = hashlib.sha256(_canonical(body)).hexdigest()
-    return _canonical({"schema": SCHEMA, "sha256": checksum, "outcome": body}) + b"\n"
+    return seal(SCHEMA, asdict(outcome))
 
 
 def from_json(data: bytes) -> Outcome:
@@ -257,25 +236,32 @@ def from_json(data: bytes) -> Outcome:
     ValueError
         When a single byte is not as it was written.
     """
-    tree = json.loads(data)
-    body = tree.get("outcome") if isinstance(tree, dict) else None
-    if not isinstance(body, dict) or set(body) != {*_NUMBERS, "failure"}:
+    body = unseal(SCHEMA, data)
+    if set(body) != {*_NUMBERS, "failure"}:
         raise ValueError("this is no run")
-    columns = [body[name] for name in _NUMBERS]
-    for column in columns:
-        if not isinstance(column, list) or any(type(value) is not float for value in column):
-            raise ValueError("a run holds lists of numbers")
+    columns = [_column(body[name]) for name in _NUMBERS]
     if len({len(column) for column in columns}) != 1:
         raise ValueError("a run holds lists of one length")
     failure = body["failure"]
     if not (failure is None or isinstance(failure, str)):
         raise ValueError("a run says in words why it ended")
-    pressures, theta, dx, dy = (tuple(column) for column in columns)
-    outcome = Outcome(pressures, theta, dx, dy, failure)
-    if to_json(outcome) != data:  # checksum, schema, layout and all
-        raise ValueError("this run is damaged")
-    return outcome
+    pressures, theta, dx, dy = columns
+    return Outcome(pressures, theta, dx, dy, failure)
 
 
-def _canonical(tree: Mapping[str, object]) -> bytes:
-    return json.dumps(tree, sort_keys=True, separators=(",", ":")).encode()
+def _column(values: object) -> tuple[float, ...]:
+    if not isinstance(values, list) or any(type(value) is not float for value in values):
+        raise ValueError("a run holds lists of numbers")
+    return tuple(values)
+
+
+def _order(task: Task) -> tuple[bool, float, float]:
+    """Sort key that puts the longest runs first."""
+    return task.model == "converged", -task.openF_mm / task.diameter_mm, task.alpha_deg
+
+
+def _died(_: Task) -> Outcome:
+    return DIED
+
+
+JOINT_RUN = RunKind(run, key, _order, _died, to_json, from_json)

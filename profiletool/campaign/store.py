@@ -7,10 +7,11 @@ import os
 import time
 import uuid
 from pathlib import Path
+from typing import Generic
 
 import platformdirs
 
-from profiletool.campaign.runs import Outcome, from_json, to_json
+from profiletool.campaign.kind import OutcomeT, RunKind, TaskT
 from profiletool.errors import OutputError
 
 FOLDER_VARIABLE = "PROFILETOOL_RUNS"
@@ -18,20 +19,28 @@ _TEMPORARY = ".part"
 _STALE_SECONDS = 86400.0
 
 
-class Store:
-    """Finished runs; any number of processes may read and write one folder at once."""
+class Store(Generic[TaskT, OutcomeT]):
+    """Finished runs of one kind; any number of processes may share one folder, also at once.
 
-    def __init__(self, folder: Path) -> None:
+    Parameters
+    ----------
+    folder : Path
+        Made when the first run is kept. Runs of other kinds may lie in it too.
+    kind : RunKind
+    """
+
+    def __init__(self, folder: Path, kind: RunKind[TaskT, OutcomeT]) -> None:
         self.folder = folder
+        self.kind = kind
 
-    def get(self, key: str) -> Outcome | None:
+    def get(self, key: str) -> OutcomeT | None:
         """Give the outcome of a run; None where there is none, or its file is damaged."""
         try:
-            return from_json(self._file(key).read_bytes())
+            return self.kind.read(self._file(key).read_bytes())
         except (OSError, ValueError, RecursionError):
             return None
 
-    def put(self, key: str, outcome: Outcome) -> None:
+    def put(self, key: str, outcome: OutcomeT) -> None:
         """Keep an outcome: whole and safe on the disk, or not at all.
 
         Raises
@@ -44,7 +53,7 @@ class Store:
             self.folder.mkdir(parents=True, exist_ok=True)
             try:
                 with fresh.open("xb") as file:
-                    file.write(to_json(outcome))
+                    file.write(self.kind.write(outcome))
                     file.flush()
                     os.fsync(file.fileno())
                 fresh.replace(self._file(key))

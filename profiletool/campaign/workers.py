@@ -10,58 +10,53 @@ import signal
 import threading
 from asyncio import CancelledError
 from collections import Counter, deque
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from typing import Any
 
-from profiletool.campaign import runs
-from profiletool.campaign.runs import Outcome, Task, from_json, to_json
+from profiletool.campaign.kind import OutcomeT, RunKind, TaskT
 from profiletool.campaign.store import Store
 from profiletool.errors import ProfiletoolError, UsageError
 
-RunOne = Callable[[Task], Outcome]
-Keyed = tuple[str, Task]
+Keyed = tuple[str, TaskT]
 # Outcomes as they come, under their keys; None where the process died over it again and again.
-Finished = Generator[tuple[str, Outcome | None]]
+Finished = Generator[tuple[str, OutcomeT | None]]
 
 AGAIN = 3  # times that a run is begun again whose process died
-DIED = Outcome((), (), (), (), "its process died")
 _CONNECT_SECONDS = 10.0
 
 
 def run_all(
-    tasks: Sequence[Task],
-    store: Store,
+    tasks: Sequence[TaskT],
+    store: Store[TaskT, OutcomeT],
     *,
     workers: int,
     scheduler: str | None = None,
     progress: Callable[[int, int], None] | None = None,
-    run: RunOne = runs.run,
-) -> list[Outcome]:
+) -> list[OutcomeT]:
     """Run tasks that the store does not hold yet; each outcome is kept as soon as it comes.
 
     Parameters
     ----------
-    tasks : sequence of Task
+    tasks : sequence
         Equal ones are run once.
     store : Store
+        Of the tasks' kind.
     workers : int
         Processes, one thread each; 1 runs in this one. A cluster has its own.
     scheduler : str, optional
         Address of a dask.distributed scheduler to run on instead, tcp://HOST:PORT.
     progress : callable, optional
         Takes how many tasks are done, those found in the store too, and how many there are.
-    run : callable, optional
-        To be found by its name in every process.
 
     Returns
     -------
-    list of Outcome
-        In the order of the tasks. A run whose process died at every trial is a failure that is
-        not kept.
+    list
+        Outcomes in the order of the tasks. A run whose process died at every trial is a failure
+        that is not kept.
 
     Raises
     ------
@@ -72,60 +67,66 @@ def run_all(
     """
     if workers < 1:
         raise ValueError(f"workers must be 1 or more, not {workers}")
-    keys = [runs.key(task) for task in tasks]
-    count = Counter(keys)
+    keys = [store.kind.key(task) for task in tasks]
     store.sweep()
-    found = {name: kept for name in count if (kept := store.get(name)) is not None}
-    done = sum(count[name] for name in found)
-
-    def tell() -> None:
-        if progress is not None:
-            progress(done, len(tasks))
-
-    tell()
-    asked = dict(zip(keys, tasks, strict=True))
-    left = sorted(((k, t) for k, t in asked.items() if k not in found), key=_longest_first)
-    with contextlib.closing(_finished(left, workers, scheduler, run)) as finished:
+    outcomes = {name: kept for name in set(keys) if (kept := store.get(name)) is not None}
+    missing = {k: task for k, task in zip(keys, tasks, strict=True) if k not in outcomes}
+    _report(progress, keys, outcomes)
+    finished = _finished(missing, store.kind, workers, scheduler)
+    with contextlib.closing(finished):
         for name, outcome in finished:
             if outcome is not None:
                 store.put(name, outcome)
-            found[name] = DIED if outcome is None else outcome
-            done += count[name]
-            tell()
-    return [found[name] for name in keys]
+            outcomes[name] = store.kind.died(missing[name]) if outcome is None else outcome
+            _report(progress, keys, outcomes)
+    return [outcomes[name] for name in keys]
 
 
-def _longest_first(keyed: Keyed) -> tuple[bool, float, float]:
-    _, task = keyed
-    return task.model == "converged", -task.openF_mm / task.diameter_mm, task.alpha_deg
+def _report(
+    progress: Callable[[int, int], None] | None,
+    keys: Sequence[str],
+    outcomes: Mapping[str, OutcomeT],
+) -> None:
+    if progress is not None:
+        progress(sum(name in outcomes for name in keys), len(keys))
 
 
-def _finished(left: list[Keyed], workers: int, scheduler: str | None, run: RunOne) -> Finished:
+def _finished(
+    missing: Mapping[str, TaskT],
+    kind: RunKind[TaskT, OutcomeT],
+    workers: int,
+    scheduler: str | None,
+) -> Finished[OutcomeT]:
+    """Run tasks, the longest first."""
+    left = sorted(missing.items(), key=lambda keyed: kind.order(keyed[1]))
     if not left:
         return
     if scheduler is not None:
-        yield from _on_cluster(left, scheduler, run)
+        yield from _on_cluster(left, scheduler, kind)
     elif workers == 1:
         for name, task in left:
-            yield name, run(task)
+            yield name, kind.run(task)
     else:
-        yield from _on_processes(left, workers, run)
+        yield from _on_processes(left, workers, kind)
 
 
-def _on_processes(left: list[Keyed], workers: int, run: RunOne) -> Finished:
+def _on_processes(
+    left: list[Keyed[TaskT]], workers: int, kind: RunKind[TaskT, OutcomeT]
+) -> Finished[OutcomeT]:
     """Run on processes, each a pool of its own, so that one that dies takes only its own run."""
     context = get_context("spawn")
     # All processes end as soon as the other end of their leash is let go of, or this one dies.
     leash, hand = context.Pipe(duplex=False)
     waiting, deaths = deque(left), Counter[str]()
     idle: list[ProcessPoolExecutor] = []
-    busy: dict[Future[Outcome], tuple[ProcessPoolExecutor, Keyed]] = {}
+    busy: dict[Future[OutcomeT], tuple[ProcessPoolExecutor, Keyed[TaskT]]] = {}
     try:
         while waiting or busy:
             while waiting and len(busy) < workers:
                 pool = idle.pop() if idle else ProcessPoolExecutor(1, context, _obey, (leash,))
+                name, task = waiting[0]
                 try:
-                    future = pool.submit(_answer, run, *waiting[0])
+                    future = pool.submit(_answer, kind, name, task)
                 except BrokenProcessPool:  # it died while it had nothing to do
                     pool.shutdown(wait=False)
                     continue
@@ -165,20 +166,22 @@ def _end_with(leash: Connection) -> None:
     os._exit(1)
 
 
-def _answer(run: RunOne, name: str, task: Task) -> Outcome:
+def _answer(kind: RunKind[TaskT, OutcomeT], name: str, task: TaskT) -> OutcomeT:
     """Run a task, elsewhere, if the model there is the one whose answer was asked for."""
-    if runs.key(task) != name:
+    if kind.key(task) != name:
         raise UsageError(
             "a worker has another version of the model; install the same profiletool everywhere"
         )
-    return run(task)
+    return kind.run(task)
 
 
-def _far(run: RunOne, name: str, task: Task) -> bytes:
-    return to_json(_answer(run, name, task))
+def _far(kind: RunKind[TaskT, OutcomeT], name: str, task: TaskT) -> bytes:
+    return kind.write(_answer(kind, name, task))
 
 
-def _on_cluster(left: list[Keyed], address: str, run: RunOne) -> Finished:
+def _on_cluster(
+    left: list[Keyed[TaskT]], address: str, kind: RunKind[TaskT, OutcomeT]
+) -> Finished[OutcomeT]:
     """Run on a cluster, which begins again by itself what its workers lose."""
 
     def answer(asked: bytes) -> bytes:
@@ -195,7 +198,7 @@ def _on_cluster(left: list[Keyed], address: str, run: RunOne) -> Finished:
         futures = {
             client.submit(
                 answer,
-                pickle.dumps((run, name, task)),
+                pickle.dumps((kind, name, task)),
                 key=f"profiletool-{name}",
                 pure=True,
                 retries=AGAIN,
@@ -219,7 +222,7 @@ def _on_cluster(left: list[Keyed], address: str, run: RunOne) -> Finished:
                 told = None
             name = futures.pop(future)
             future.release()  # else what a killed worker has long handed over is run again
-            yield name, None if told is None else from_json(told)
+            yield name, None if told is None else kind.read(told)
 
 
 def _dask() -> Any:

@@ -85,7 +85,7 @@ def derive(
             return
         if out is None:
             raise UsageError("--out FILE is missing: where the formula shall be written")
-        from profiletool.campaign.derive import Plan, check_plan, load_base, similar
+        from profiletool.campaign.derive import CampaignPlan, check_plan, load_base, similar
         from profiletool.campaign.derive import derive as run
         from profiletool.campaign.formula_file import formula_file
         from profiletool.files import write
@@ -100,7 +100,7 @@ def derive(
             raise UsageError(
                 f"--max-pressure must be above 0 and at most 100 bar, not {max_pressure:g}"
             )
-        plan = Plan(
+        plan = CampaignPlan(
             diameter_mm=diameter,
             wall_mm=wall,
             rubber=parse_rubber(rubber),
@@ -117,10 +117,11 @@ def derive(
                 f"note: this tube's shape or kind of rubber is not that of {start}; five runs "
                 "correct what differs, a full campaign without --from is surer"
             )
+        from profiletool.campaign.runs import JOINT_RUN
         from profiletool.campaign.store import Store, default_folder
         from profiletool.campaign.workers import run_all
 
-        store = Store(runs or default_folder())
+        store = Store(runs or default_folder(), JOINT_RUN)
         with progress_bar("finite elements", quiet, left=True) as show:
 
             def told(done: int, total: int) -> None:

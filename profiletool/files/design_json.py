@@ -7,9 +7,11 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from formula.rubber import read_rubber
 from profiletool.errors import UnreadableInput
 from profiletool.files.read import read_file
 from profiletool.records.design import Design
+from profiletool.records.rubber import law_of
 
 SCHEMA = "profiletool.design/1"
 _DECIMALS = 6  # a nanometre; keeps the last bits of the arithmetic out of the file
@@ -39,7 +41,7 @@ def from_json(text: str | bytes, file: str) -> Design:
     if not isinstance(tree, dict) or tree.get("schema") != SCHEMA:
         raise UnreadableInput(f'{file} is no design: its "schema" is not "{SCHEMA}"')
     try:
-        design = TypeAdapter(Design).validate_python(tree)
+        design = TypeAdapter(Design).validate_python(_with_law(tree, file))
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])
@@ -73,6 +75,17 @@ def load_design(path: Path) -> Design:
     return from_json(data, path.name)
 
 
+def _with_law(tree: dict[str, Any], file: str) -> dict[str, Any]:
+    """Read the rubber, which older files hold in another form."""
+    tube = tree.get("tube")
+    if not isinstance(tube, dict) or not isinstance(rubber := tube.get("rubber"), dict):
+        return tree
+    try:
+        return tree | {"tube": {**tube, "rubber": read_rubber(rubber)}}
+    except ValueError as error:
+        raise UnreadableInput(f"{file}: tube.rubber: {error}") from error
+
+
 def _refuse_constant(name: str) -> float:
     raise ValueError(f"{name} is no number")
 
@@ -100,8 +113,10 @@ def _check(design: Design, file: str) -> None:
     )
     if not sane:
         raise UnreadableInput(f"{file}: no tube and gauze can have such sizes")
-    if tube.rubber is not None and not tube.rubber.sane:
-        raise UnreadableInput(f"{file}: no rubber can have such constants")
+    try:
+        law_of(tube.rubber)
+    except ValueError as error:
+        raise UnreadableInput(f"{file}: tube.rubber: {error}") from error
     if not design.joints:
         raise UnreadableInput(f"{file} has no joints")
     end = 0.0

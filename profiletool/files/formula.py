@@ -8,6 +8,7 @@ from formula.errors import BadFormula
 from formula.files import load_formula
 from formula.theta import Formula, widened
 from profiletool.errors import UnreadableInput
+from profiletool.records.rubber import law_of
 
 
 def read_formula(path: Path | None, extrapolate: bool = False) -> Formula:
@@ -16,10 +17,14 @@ def read_formula(path: Path | None, extrapolate: bool = False) -> Formula:
     Raises
     ------
     UnreadableInput
-        When the file holds no formula.
+        When the file holds no formula, or one for a rubber that cannot be.
     """
     try:
         formula = load_formula(path)
     except BadFormula as error:
         raise UnreadableInput(str(error)) from error
+    try:
+        law_of(formula.rubber)
+    except ValueError as error:
+        raise UnreadableInput(f"{path}: domain.rubber: {error}") from error
     return widened(formula) if extrapolate else formula

@@ -23,8 +23,8 @@ from profiletool.records.design import AWAY_DEG, TOWARD_DEG, Joint
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request, TubeSpec
+from profiletool.records.rubber import law_of
 from profiletool.records.units import BAR_PER_MPA, FloatArray
-from profiletool.rubber.presets import law_of
 
 S = TypeVar("S")
 _PRESSURE_STEP = 0.001  # MPa: what a gauge can be set to
@@ -105,7 +105,7 @@ def _model(request: Request, formula: Formula) -> Model:
         return FormulaModel(formula, material.radius_mm)
     law = law_of(material.rubber)
     return Response.load().scaled(
-        material.outer_diameter_mm, material.wall_mm, stiffness=law.C10 + law.C01
+        material.outer_diameter_mm, material.wall_mm, stiffness=0.5 * law.shear_modulus
     )
 
 

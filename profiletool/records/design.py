@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from formula.theta import RubberLaw
+from formula.rubber import RubberLaw
 from profiletool.records.frames import Pose
 from profiletool.records.side import Side
 

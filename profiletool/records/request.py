@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 from profiletool.records.side import Side
 
 if TYPE_CHECKING:
-    from formula.theta import RubberLaw
+    from formula.rubber import RubberLaw
     from profiletool.records.picture import Picture
     from profiletool.records.profile import Drawing, Profile
 

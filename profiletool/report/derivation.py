@@ -11,6 +11,7 @@ from matplotlib import colormaps
 from formula.fit import Errors
 from formula.theta import Terms, theta_deg
 from profiletool.campaign.derive import Derivation, formula_of
+from profiletool.records.rubber import constants_text
 from profiletool.records.units import FloatArray
 from profiletool.report.figure import panels, png, styles
 from profiletool.report.palette import BLUE, GREY, INK, RED
@@ -175,8 +176,8 @@ def derivation_text(found: Derivation) -> str:
     runs = int(np.isfinite(found.made.theta_deg).any(axis=2).sum())
     cells = int(np.isfinite(data.theta_deg).sum())
     lines = [
-        f"tube {plan.diameter_mm:g} x {plan.wall_mm:g} mm, {plan.rubber.name}: C10 "
-        f"{plan.rubber.law.C10:.4g}, C01 {plan.rubber.law.C01:.4g}, K {plan.rubber.law.K:.4g} MPa",
+        f"tube {plan.diameter_mm:g} x {plan.wall_mm:g} mm, {plan.rubber.name}: "
+        f"{constants_text(plan.rubber.record)}",
         f"{runs} joints run, {cells} angles fitted, up to {plan.pressures_bar[-1]:g} bar",
     ]
     if found.base is not None:

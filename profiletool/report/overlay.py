@@ -1,9 +1,8 @@
-"""The overlay: the picture with everything that was read off it and laid onto it, to scale."""
+"""The overlay: the picture with the profile, the tube and its joints drawn onto it, to scale."""
 
 from __future__ import annotations
 
 import io
-import textwrap
 from collections.abc import Sequence
 from typing import Any
 
@@ -14,12 +13,11 @@ from matplotlib.patches import Polygon
 from matplotlib.patheffects import withStroke
 
 from profiletool.profile.offset import offset_curve, offset_points
-from profiletool.records.design import Design, Joint
 from profiletool.records.frames import Shape
 from profiletool.records.units import FloatArray
+from profiletool.report.overlay_panel import best_theta_deg, draw_panel
 from profiletool.report.palette import BLUE, GREEN, GREY, INK, PURPLE, RED, SKY, YELLOW
 from profiletool.report.scene import Scene
-from profiletool.report.text import scale_text
 
 _DPI = 130
 _MARGIN_MM = 12.0
@@ -45,7 +43,7 @@ def draw_overlay(scene: Scene) -> bytes:
     _draw_joints(axes, scene)
     _draw_scale_bar(axes, (x0, x1, y0, y1))
     side = figure.add_axes((wide / (wide + panel), 0.0, panel / (wide + panel), 1.0))
-    _draw_panel(side, scene)
+    draw_panel(side, scene)
     buffer = io.BytesIO()
     # A better level would take a quarter of a second to save a fifth of the size.
     figure.savefig(
@@ -180,15 +178,9 @@ def _draw_joints(axes: Any, scene: Scene) -> None:
         )  # fmt: skip
         axes.text(
             *_free_place([curve[at] for curve in angles], taken),
-            f"{joint.sense * _theta(joint):.0f}°", color=INK, fontsize=10.5,
+            f"{joint.sense * best_theta_deg(joint):.0f}°", color=INK, fontsize=10.5,
             weight="bold", ha="center", va="center", zorder=9, path_effects=_halo(3.0),
         )  # fmt: skip
-
-
-def _theta(joint: Joint) -> float:
-    """Give the angle that is the most believable one."""
-    known = (joint.theta_fe_deg, joint.theta_response_deg, joint.theta_formula_deg)
-    return next(theta for theta in known if theta is not None)
 
 
 def _free_place(places: Sequence[FloatArray], taken: list[FloatArray]) -> FloatArray:
@@ -210,109 +202,3 @@ def _draw_scale_bar(axes: Any, limits: tuple[float, float, float, float]) -> Non
         x + _SCALE_BAR_MM / 2.0, y + 1.8, f"{_SCALE_BAR_MM:g} mm", ha="center", fontsize=10,
         color=INK, zorder=9, path_effects=_halo(3.0),
     )  # fmt: skip
-
-
-def _draw_panel(axes: Any, scene: Scene) -> None:
-    design = scene.design
-    axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0))
-    axes.set_axis_off()
-    y = 0.955
-    name = _short(design.source.file, 30)
-    axes.text(0.03, y, name, fontsize=15, weight="bold", color=INK, parse_math=False)
-    for text, colour in _status(design):
-        y -= 0.032
-        axes.text(0.03, y, text, fontsize=10.5, weight="bold", color=colour)
-    for text in _facts(design):
-        y -= 0.029
-        axes.text(0.03, y, text, fontsize=10, color=INK)
-    y = _draw_table(axes, design, y - 0.05)
-    y = _draw_legend(axes, scene, y)
-    _draw_warnings(axes, design, y)
-
-
-def _status(design: Design) -> list[tuple[str, str]]:
-    lines = []
-    if not design.feasible:
-        lines.append(("INFEASIBLE: best attempt", RED))
-    off = design.fit.fe
-    if not design.verified:
-        lines.append(("NOT VERIFIED by FE", RED))
-    elif off is not None:
-        lines.append((f"verified by FE: {off.rms_mm:.2f} mm RMS off the profile", INK))
-    return lines
-
-
-def _facts(design: Design) -> list[str]:
-    tube, source, fit = design.tube, design.source, design.fit
-    scale = "" if source.mm_per_px is None else f"  ({scale_text(source)})"
-    off = [("formula off the profile", fit.formula)]
-    if fit.response is not None:
-        off.append(("joint response off the profile", fit.response))
-    if fit.fe is not None:
-        off.append(("FE off the profile", fit.fe))
-    return [
-        f"operating pressure {design.pressure_bar:.2f} bar",
-        f"tube {tube.outer_diameter_mm:g} x {tube.wall_mm:g} mm, {tube.length_mm:.1f} mm long, "
-        f"root {tube.root_mm:.1f} mm",
-        f"{source.side} side, {source.profile_length_mm:.1f} mm to follow",
-        f"scale from {source.scale_source}{scale}",
-        *(f"{by}: {m.rms_mm:.2f} mm RMS, {m.max_mm:.1f} at most" for by, m in off),
-    ]
-
-
-def _draw_table(axes: Any, design: Design, y: float) -> float:
-    columns: tuple[float, ...] = (0.06, 0.22, 0.40, 0.58, 0.75, 0.92)
-    heads: tuple[str, ...] = ("joint", "F\nmm", "openF\nmm", "α closed\n°", "α center\n°", "θ\n°")
-    if design.verified:
-        columns = (0.06, 0.18, 0.32, 0.47, 0.62, 0.79, 0.93)
-        heads = (*heads[:5], "θ formula\n°", "θ FE\n°")
-    for x, head in zip(columns, heads, strict=True):
-        axes.text(x, y, head, fontsize=9, color=GREY, ha="center", va="center", linespacing=1.3)
-    y -= 0.027
-    axes.plot([0.02, 0.98], [y, y], color=INK, lw=0.8)
-    step = min(0.027, 0.30 / len(design.joints))
-    for joint in design.joints:
-        y -= step
-        cells = (
-            f"{joint.number}", f"{joint.F_mm:.1f}", f"{joint.openF_mm:g}",
-            f"{joint.alpha_closed_deg:.4g}", f"{joint.alpha_center_deg:g}",
-            *((f"{joint.theta_formula_deg:.1f}",) if design.verified else ()),
-            f"{_theta(joint):.1f}",
-        )  # fmt: skip
-        for x, cell in zip(columns, cells, strict=True):
-            axes.text(x, y, cell, fontsize=10, color=INK, ha="center", va="center")
-    return y - 0.022
-
-
-def _draw_legend(axes: Any, scene: Scene, y: float) -> float:
-    main = axes.figure.axes[0]
-    handles, labels = main.get_legend_handles_labels()
-    legend = axes.legend(
-        handles, labels, loc="upper left", bbox_to_anchor=(0.0, y), fontsize=9.5, frameon=False,
-        handlelength=2.6, labelspacing=0.45,
-    )  # fmt: skip
-    for line in legend.get_lines():
-        line.set_path_effects([])
-    return y - 0.0235 * len(labels) - 0.03
-
-
-def _draw_warnings(axes: Any, design: Design, y: float) -> None:
-    for shown, warning in enumerate(design.warnings):
-        lines = textwrap.wrap("• " + warning, 58, subsequent_indent="   ")
-        height = 0.0205 * len(lines)
-        if y - height < 0.02:
-            axes.text(
-                0.03,
-                y,
-                f"• {len(design.warnings) - shown} more in design.json",
-                fontsize=8.5,
-                color=GREY,
-                va="top",
-            )
-            return
-        axes.text(0.03, y, "\n".join(lines), fontsize=8.5, color=GREY, va="top", linespacing=1.25)
-        y -= height + 0.008
-
-
-def _short(text: str, most: int) -> str:
-    return text if len(text) <= most else text[: most - 1] + "…"

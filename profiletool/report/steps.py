@@ -9,6 +9,7 @@ from math import pi
 from profiletool.joints.windows import off_mesh, seam_at
 from profiletool.records.design import Design
 from profiletool.records.fe import Verification
+from profiletool.records.rubber import constants_text
 from profiletool.report.markup import Markup, joined, pairs, signed, tag
 from profiletool.report.tables import pressure_table, slit_table
 from profiletool.template.labels import short, times
@@ -67,8 +68,7 @@ def _tube(design: Design) -> Markup:
     law = (
         _PAPER_RUBBER
         if rubber is None or rubber.name == "paper"
-        else f"{rubber.name} (C10 {rubber.C10_MPa:.4g}, C01 {rubber.C01_MPa:.4g}, "
-        f"K {rubber.K_MPa:.4g} MPa)"
+        else f"{rubber.name} ({constants_text(rubber)})"
     )
     return joined(
         (

@@ -8,19 +8,31 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
-from fem.material import PAPER_RUBBER, MooneyRivlin
-from formula.theta import RubberLaw
+import numpy as np
+
+from fem.material import PAPER_RUBBER, Law, MooneyRivlin, law
+from formula.rubber import RubberLaw
 from profiletool.errors import UnreadableInput, UsageError
 from profiletool.files.columns import NUMBER
 from profiletool.files.read import read_file
-from profiletool.rubber.uniaxial import STIFFNESSES, fit_uniaxial, read_uniaxial
+from profiletool.records.rubber import constants_text
+from profiletool.rubber.uniaxial import STIFFNESSES, fit_uniaxial, read_uniaxial, uniaxial_stress
 
 PAPER_NU = 0.46
 NUS = (0.3, 0.4995)  # below is foam; beyond, the bulk modulus is 1000 times the shear modulus
 _MOST_BYTES = 5_000_000
 _SHOWN = 60  # characters of what was given, in a message
-_LAWS = {"mooney-rivlin": ("C10", "C01", "nu"), "neo-hooke": ("C10", "nu")}
-_FORMS = '"mooney-rivlin:C10,C01,nu" or "neo-hooke:C10,nu" (MPa), or a CSV file of stretch,stress'
+_LAWS = {
+    "mooney-rivlin": ("C10", "C01", "nu"),
+    "neo-hooke": ("C10", "nu"),
+    "yeoh": ("C10", "C20", "C30", "nu"),
+    "ogden": ("mu1", "alpha1", "mu2", "alpha2", "...", "nu"),
+}
+_FORMS = (
+    f"{', '.join(f'{law}:{chr(44).join(names)}' for law, names in _LAWS.items())} (MPa), or a CSV "
+    "file of stretch,stress"
+)
+_STABLE = np.linspace(0.35, 3.0, 54)  # stretches at which a pull that grows must lengthen a strip
 
 
 @dataclass(frozen=True)
@@ -30,7 +42,7 @@ class Rubber:
     Attributes
     ----------
     name : str
-    law : fem.material.MooneyRivlin
+    law : fem.material.Law
         MPa.
     source : str
         One line.
@@ -41,7 +53,7 @@ class Rubber:
     """
 
     name: str
-    law: MooneyRivlin
+    law: Law
     source: str
     stretch_range: tuple[float, float] | None = None
     rms_MPa: float | None = None
@@ -49,8 +61,13 @@ class Rubber:
     @property
     def nu(self) -> float:
         """Poisson's ratio at small strain."""
-        mu, K = self.law.shear_modulus, self.law.K
+        mu, K = self.law.shear_modulus, self.law.bulk_modulus
         return (3.0 * K - 2.0 * mu) / (6.0 * K + 2.0 * mu)
+
+    @property
+    def record(self) -> RubberLaw:
+        """Name, law and constants, as files hold them."""
+        return RubberLaw(self.name, self.law.name, dict(self.law.constants))
 
 
 _ASSUMED = f"nu {PAPER_NU:g} is assumed"
@@ -106,8 +123,9 @@ def parse_rubber(text: str) -> Rubber:
     Parameters
     ----------
     text : str
-        The name of a preset; ``mooney-rivlin:C10,C01,nu`` or ``neo-hooke:C10,nu`` (MPa, MPa, -);
-        or the path of a CSV file of uniaxial test data
+        The name of a preset; a law and its constants, ``mooney-rivlin:C10,C01,nu``,
+        ``neo-hooke:C10,nu``, ``yeoh:C10,C20,C30,nu`` or ``ogden:mu1,alpha1,...,nu`` (MPa but for
+        alpha and nu); or the path of a CSV file of uniaxial test data
         (`profiletool.rubber.uniaxial.read_uniaxial`), which is fitted with nu = 0.46.
 
     Raises
@@ -121,67 +139,88 @@ def parse_rubber(text: str) -> Rubber:
     name = re.sub(r"[\s_]+", "-", given.lower())
     if name in PRESETS:
         return PRESETS[name]
-    law, colon, constants = given.partition(":")
-    if colon and law.strip().lower() in _LAWS:
-        return _by_constants(law.strip().lower(), constants)
+    kind, colon, constants = given.partition(":")
+    if colon and kind.strip().lower() in _LAWS:
+        return _by_constants(kind.strip().lower(), constants)
     path = Path(given)
     if given and (_exists(path) or path.suffix.lower() in (".csv", ".txt", ".tsv", ".dat")):
         return _by_test(path)
     raise UsageError(f"no rubber {_quoted(given)}; give one of {', '.join(PRESETS)}, or {_FORMS}")
 
 
-def law_of(constants: RubberLaw | None) -> MooneyRivlin:
-    """Give the law of constants as files hold them; None is the paper's."""
-    if constants is None:
-        return PAPER_RUBBER
-    return MooneyRivlin(constants.C10_MPa, constants.C01_MPa, constants.K_MPa)
-
-
 def presets_text() -> str:
     """Table of the presets, a line each."""
-    width = max(len(name) for name in PRESETS)
-    lines = [f"{'name':{width}}  C10/MPa  C01/MPa    nu  shear modulus/MPa  source"]
-    for name, rubber in PRESETS.items():
-        law = rubber.law
+    heads = ("name", "law", "constants")
+    rows = [
+        (name, rubber.law.name, constants_text(rubber.record)) for name, rubber in PRESETS.items()
+    ]
+    widths = [max(map(len, column)) for column in zip(heads, *rows, strict=True)]
+    lines = [
+        "  ".join(f"{head:{width}}" for head, width in zip(heads, widths, strict=True))
+        + "    nu  shear modulus/MPa  source"
+    ]
+    for words, rubber in zip(rows, PRESETS.values(), strict=True):
+        cells = "  ".join(f"{word:{width}}" for word, width in zip(words, widths, strict=True))
         lines.append(
-            f"{name:{width}}  {law.C10:7.4f}  {law.C01:7.4f}  {rubber.nu:4.2f}  "
-            f"{law.shear_modulus:17.4f}  {rubber.source}"
+            f"{cells}  {rubber.nu:4.2f}  {rubber.law.shear_modulus:17.4f}  {rubber.source}"
         )
     return "\n".join(lines) + "\n"
 
 
 def _by_constants(kind: str, text: str) -> Rubber:
-    names = _LAWS[kind]
-    form = f"{kind}:{','.join(names)}"
     fields = [field.strip() for field in text.split(",")]
-    if len(fields) != len(names) or not all(NUMBER.fullmatch(field) for field in fields):
+    numbers = [float(field) for field in fields if NUMBER.fullmatch(field)]
+    fits = (
+        len(fields) >= 3 and len(fields) % 2 == 1
+        if kind == "ogden"
+        else (len(fields) == len(_LAWS[kind]))
+    )
+    if not fits or len(numbers) != len(fields):
         raise UsageError(
-            f"{_quoted(text)} is not what {form} takes: {len(names)} numbers with commas between, "
-            "as in mooney-rivlin:0.0694,0.0628,0.46"
+            f"{_quoted(text)} is not what {kind}:{','.join(_LAWS[kind])} takes: numbers with "
+            "commas between, as in mooney-rivlin:0.0694,0.0628,0.46"
         )
-    values = dict(zip(names, map(float, fields), strict=True))
-    C10, C01, nu = values["C10"], values.get("C01", 0.0), values["nu"]
+    *values, nu = numbers
     if not NUS[0] <= nu <= NUS[1]:
         raise UsageError(
             f"nu must lie in {NUS[0]:g} .. {NUS[1]:g}, not {nu:g}; the paper takes {PAPER_NU:g}"
         )
-    # C10 + C01 > 0 is stiffness at small strain only. A negative C10 turns soft in tension, a
-    # negative C01 in compression and equibiaxial tension; with both >= 0 the law is polyconvex.
-    if C10 < 0.0 or C01 < 0.0:
+    rubber = Rubber(f"{kind}:{','.join(fields)}", _made(kind, values, nu), "constants as given")
+    half = 0.5 * rubber.law.shear_modulus
+    if not STIFFNESSES[0] <= half <= STIFFNESSES[1]:
         raise UsageError(
-            f"C10 {C10:g} and C01 {C01:g} MPa: a negative constant makes the rubber unstable at "
-            "large strain; fit again with both >= 0, or give the test data as a CSV file"
+            f"half of the shear modulus (C10 + C01) must lie in {STIFFNESSES[0]:g} .. "
+            f"{STIFFNESSES[1]:g} MPa, not {half:g}; give the constants in MPa"
         )
-    if not STIFFNESSES[0] <= C10 + C01 <= STIFFNESSES[1]:
+    return rubber
+
+
+def _made(kind: str, values: list[float], nu: float) -> Law:
+    """Make a law that is stable: a strip is the longer, the harder it is pulled.
+
+    A negative C10 turns soft in tension, a negative C01 in compression and equibiaxial tension;
+    with both >= 0 the law is polyconvex.
+    """
+    names = _LAWS[kind][:-1]
+    constants: dict[str, float | tuple[float, ...]] = dict(zip(names, values, strict=False))
+    if kind == "ogden":
+        constants = {"mu": tuple(values[::2]), "alpha": tuple(values[1::2])}
+    try:
+        made = law(kind, {**constants, "nu": nu})
+    except ValueError as error:
         raise UsageError(
-            f"C10 + C01 must lie in {STIFFNESSES[0]:g} .. {STIFFNESSES[1]:g} MPa, "
-            f"not {C10 + C01:g}; give the constants in MPa"
+            f"{kind}: {error}, else the rubber is unstable; fit again, or give the test data as a "
+            "CSV file"
+        ) from error
+    # The constants but for nu: of foam-like rubbers compression says little.
+    stress = uniaxial_stress(law(kind, {**constants, "nu": 0.49}), _STABLE)
+    if not (np.isfinite(stress).all() and (np.diff(stress) > 0.0).all()):
+        raise UsageError(
+            f"{kind}: the rubber is unstable between stretches {_STABLE[0]:g} and "
+            f"{_STABLE[-1]:g}: its stress does not rise all along; fit again, or give the test "
+            "data as a CSV file"
         )
-    return Rubber(
-        name=f"{kind}:{','.join(fields)}",
-        law=MooneyRivlin.from_poisson(C10, C01, nu),
-        source="constants as given",
-    )
+    return made
 
 
 def _by_test(path: Path) -> Rubber:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize_scalar
 
-from fem.material import FloatArray, MooneyRivlin, kinematics
+from fem.material import FloatArray, Law, MooneyRivlin, kinematics
 from profiletool.errors import UnreadableInput
 from profiletool.files.columns import NUMBER, read_lines, shown
 
@@ -48,7 +48,7 @@ class Fit:
     r2: float
 
 
-def uniaxial_stress(law: MooneyRivlin, stretch: ArrayLike) -> FloatArray:
+def uniaxial_stress(law: Law, stretch: ArrayLike) -> FloatArray:
     """Nominal stress of a strip whose sides are free, in the compressible law.
 
     The paper's rubber (nu 0.46) gives 4 % less at stretch 2 than if it were incompressible,
@@ -56,7 +56,7 @@ def uniaxial_stress(law: MooneyRivlin, stretch: ArrayLike) -> FloatArray:
 
     Parameters
     ----------
-    law : fem.material.MooneyRivlin
+    law : fem.material.Law
     stretch : (n,)
         Positive.
 

@@ -39,3 +39,24 @@ def off_text(misfit: Misfit) -> str:
 
 def _counted(joints: int) -> str:
     return "1 joint" if joints == 1 else f"{joints} joints"
+
+
+def summary(design: Design) -> str:
+    """Joints, distances, verdict and notes of a design as text."""
+    verdict = (
+        "feasible" if design.feasible else "INFEASIBLE",
+        "verified by finite elements" if design.verified else "NOT VERIFIED",
+    )
+    notes = [f"note: {text}" for text in design.warnings]
+    return joint_table(design) + "\n".join((", ".join(verdict), *notes))
+
+
+def headline(design: Design) -> str:
+    """Say in one line what a design is."""
+    fit = design.fit.fe or design.fit.response or design.fit.formula
+    verified = "verified" if design.verified else "NOT VERIFIED"
+    return (
+        f"{design.source.file}: {_counted(len(design.joints))} at {design.pressure_bar:.2f} bar, "
+        f"{fit.rms_mm:.2f} mm RMS off the profile, "
+        f"{'feasible' if design.feasible else 'INFEASIBLE'}, {verified}"
+    )

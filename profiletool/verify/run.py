@@ -81,28 +81,32 @@ def inflate(
             progress(BAR_PER_MPA * pressure)
 
     asked = [p / BAR_PER_MPA for p in pressures_bar]
-    found = solve(actuator, asked, threads=threads, progress=told)
+    solution = solve(actuator, asked, threads=threads, progress=told)
+    place = Placement(pose, sign, actuator.radius)
+    return Run(_verification(solution, max(pressures_bar), place, thread_pitch_mm), solution)
+
+
+def _verification(
+    found: Solution, asked_bar: float, place: Placement, thread_pitch_mm: float
+) -> Verification:
+    """Read a solution off, its lines placed beside the object."""
     # Beyond half a turn the angles go on, and do not start again from the other side.
     angles = np.unwrap([np.degrees(s.theta) for s in found.states], period=360.0, axis=0)
-    place = Placement(pose, sign, actuator.radius)
     rest, *loaded = (
         _state(found, state, theta, place, thread_pitch_mm)
         for state, theta in zip(found.states, angles, strict=True)
     )
     mesh = found.mesh
-    return Run(
-        Verification(
-            rest=rest,
-            states=tuple(loaded),
-            asked_bar=max(pressures_bar),
-            critical=None if found.critical is None else ended(found.critical),
-            elements=mesh.elements,
-            nodes=mesh.nodes,
-            dofs=_dofs(mesh),
-            newton_iterations=found.newton_iterations,
-            seconds=found.seconds,
-        ),
-        found,
+    return Verification(
+        rest=rest,
+        states=tuple(loaded),
+        asked_bar=asked_bar,
+        critical=None if found.critical is None else ended(found.critical),
+        elements=mesh.elements,
+        nodes=mesh.nodes,
+        dofs=_dofs(mesh),
+        newton_iterations=found.newton_iterations,
+        seconds=found.seconds,
     )
 
 

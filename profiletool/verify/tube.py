@@ -11,7 +11,7 @@ from profiletool.records.design import Design
 from profiletool.records.design import Gauze as DesignGauze
 from profiletool.records.design import Tube as DesignTube
 from profiletool.records.request import TubeSpec
-from profiletool.rubber.presets import law_of
+from profiletool.records.rubber import law_of
 
 _PAPER_THREAD_MM = 0.25
 

@@ -7,11 +7,12 @@ import os
 import signal
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 from uuid import uuid4
 
 from fem.material import PAPER_RUBBER
-from profiletool.campaign.runs import Outcome, Task
+from profiletool.campaign.runs import JOINT_RUN, Outcome, Task
 from profiletool.campaign.store import Store
 from profiletool.campaign.workers import run_all
 from tests.campaign.processes import until
@@ -59,6 +60,9 @@ def run(task: Task) -> Outcome:
     return outcome(task)
 
 
+FAKE_RUN = replace(JOINT_RUN, run=run)
+
+
 def calls(folder: Path, task: Task | None = None, suffix: str = ".*") -> list[Path]:
     """Marks of the calls so far, of one task or of all."""
     name = "*" if task is None else f"{task.openF_mm:g}-*"
@@ -75,5 +79,5 @@ def main() -> None:
     signal.signal(signal.SIGINT, signal.default_int_handler)
     folder, count, workers = sys.argv[1:]
     tasks = [task(n) for n in range(int(count))]
-    found = run_all(tasks, Store(Path(folder)), workers=int(workers), run=run)
+    found = run_all(tasks, Store(Path(folder), FAKE_RUN), workers=int(workers))
     assert found == [outcome(t) for t in tasks]

@@ -15,9 +15,9 @@ from pathlib import Path
 import pytest
 
 from fem.material import PAPER_RUBBER
-from profiletool.campaign.runs import Task, key, run, to_json
+from profiletool.campaign.runs import DIED, JOINT_RUN, Task, key, run, to_json
 from profiletool.campaign.store import Store
-from profiletool.campaign.workers import DIED, run_all
+from profiletool.campaign.workers import run_all
 from profiletool.errors import ProfiletoolError, UsageError
 from tests.campaign import fake
 from tests.campaign.processes import environment, until
@@ -29,7 +29,7 @@ Start = Callable[..., "subprocess.Popen[bytes]"]
 def test_without_dask(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(UsageError, match=r"install profiletool\[cluster\]"):
-        run_all(TASKS, Store(tmp_path), workers=1, scheduler="tcp://127.0.0.1:1")
+        run_all(TASKS, Store(tmp_path, fake.FAKE_RUN), workers=1, scheduler="tcp://127.0.0.1:1")
 
 
 def free_port() -> int:
@@ -110,7 +110,7 @@ def test_a_worker_that_is_killed_loses_its_own_run_only(
     workers = [worker(start, scheduler, **{fake.HELD_AFTER: "3"}) for _ in range(2)]
     killed: list[int] = []
     kept: list[Task] = []
-    store = Store(tmp_path / "store")
+    store = Store(tmp_path / "store", fake.FAKE_RUN)
 
     def under_way() -> bool:
         """Whether a worker that has handed a run over is at the next one."""
@@ -127,7 +127,7 @@ def test_a_worker_that_is_killed_loses_its_own_run_only(
             os.kill(killed[0], signal.SIGKILL)
             fake.let_go(calls)
 
-    found = run_all(TASKS, store, workers=1, scheduler=scheduler, progress=kill, run=fake.run)
+    found = run_all(TASKS, store, workers=1, scheduler=scheduler, progress=kill)
     assert killed[0] in {process.pid for process in workers}
     assert [to_json(f) for f in found] == [to_json(fake.outcome(task)) for task in TASKS]
     # What the killed one had under way was begun again, and what it had not handed over yet.
@@ -143,7 +143,8 @@ def test_a_worker_that_is_killed_loses_its_own_run_only(
 
     # The same model answers bit for bit the same there.
     real = [Task(6.0, 120.0, 12.0, 1.5, PAPER_RUBBER, (0.1,))]
-    there = run_all(real, store, workers=1, scheduler=scheduler)
+    joints = Store(store.folder, JOINT_RUN)
+    there = run_all(real, joints, workers=1, scheduler=scheduler)
     assert [to_json(f) for f in there] == [to_json(run(task)) for task in real]
 
 
@@ -153,8 +154,8 @@ def test_a_run_that_kills_every_worker_is_a_failure(
     _, scheduler = start_scheduler(start, DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0")
     for _ in range(2):
         worker(start, scheduler)
-    tasks, store = [*TASKS[:2], fake.task(9, fake.DEADLY)], Store(tmp_path / "store")
-    found = run_all(tasks, store, workers=1, scheduler=scheduler, run=fake.run)
+    tasks, store = [*TASKS[:2], fake.task(9, fake.DEADLY)], Store(tmp_path / "store", fake.FAKE_RUN)
+    found = run_all(tasks, store, workers=1, scheduler=scheduler)
     assert found == [*(fake.outcome(task) for task in TASKS[:2]), DIED]
     assert store.get(key(tasks[-1])) is None
 
@@ -164,10 +165,9 @@ def test_a_bug_is_raised(scheduler: str, start: Start, calls: Path, tmp_path: Pa
     with pytest.raises(ZeroDivisionError, match="a bug"):
         run_all(
             [fake.task(0, fake.BUGGY)],
-            Store(tmp_path / "store"),
+            Store(tmp_path / "store", fake.FAKE_RUN),
             workers=1,
             scheduler=scheduler,
-            run=fake.run,
         )
 
 
@@ -176,21 +176,21 @@ def test_a_worker_without_what_it_takes_says_so_and_lives_on(
 ) -> None:
     there = worker(start, scheduler, PYTHONPATH="")
     with pytest.raises(UsageError, match=r"No module named .*install the same profiletool"):
-        run_all(TASKS, Store(tmp_path), workers=1, scheduler=scheduler, run=fake.run)
+        run_all(TASKS, Store(tmp_path, fake.FAKE_RUN), workers=1, scheduler=scheduler)
     assert there.poll() is None
 
 
 def test_a_scheduler_that_goes_away(start: Start, calls: Path, tmp_path: Path) -> None:
     scheduler, address = start_scheduler(start)
     worker(start, address, **{fake.HELD_AFTER: "2"})  # some are always left to lose
-    store = Store(tmp_path / "store")
+    store = Store(tmp_path / "store", fake.FAKE_RUN)
 
     def kill(done: int, _: int) -> None:
         if done == 1:
             scheduler.kill()
 
     with pytest.raises(ProfiletoolError, match="is gone"):
-        run_all(TASKS, store, workers=1, scheduler=address, progress=kill, run=fake.run)
+        run_all(TASKS, store, workers=1, scheduler=address, progress=kill)
     assert len(list(store.folder.glob("*.json"))) >= 1
 
 
@@ -199,11 +199,13 @@ def test_no_scheduler_there(tmp_path: Path, address: str, monkeypatch: pytest.Mo
     pytest.importorskip("distributed")
     monkeypatch.setattr("profiletool.campaign.workers._CONNECT_SECONDS", 0.5)
     with pytest.raises(UsageError, match="no dask scheduler answers"):
-        run_all(TASKS, Store(tmp_path), workers=1, scheduler=address.format(free_port()))
+        run_all(
+            TASKS, Store(tmp_path, fake.FAKE_RUN), workers=1, scheduler=address.format(free_port())
+        )
 
 
 def test_what_is_kept_needs_no_scheduler(tmp_path: Path) -> None:
-    store = Store(tmp_path)
+    store = Store(tmp_path, fake.FAKE_RUN)
     store.put(key(TASKS[0]), fake.outcome(TASKS[0]))
     found = run_all(TASKS[:1], store, workers=1, scheduler="tcp://127.0.0.1:1")
     assert found == [fake.outcome(TASKS[0])]

@@ -13,7 +13,7 @@ import pytest
 from fem.material import PAPER_RUBBER, MooneyRivlin
 from formula.files import load_formula, parse_formula
 from formula.theta import theta_deg
-from profiletool.campaign.derive import Base, Plan, check_plan, derive, load_base, similar
+from profiletool.campaign.derive import Base, CampaignPlan, check_plan, derive, load_base, similar
 from profiletool.campaign.formula_file import formula_file
 from profiletool.campaign.runs import Outcome, Task
 from profiletool.errors import NotVerified, UnreadableInput, UsageError
@@ -21,7 +21,7 @@ from profiletool.report.derivation import derivation_files, derivation_text
 from profiletool.rubber.presets import PRESETS, Rubber
 
 PAPER = load_formula()
-PLAN = Plan(
+PLAN = CampaignPlan(
     diameter_mm=20.0,
     wall_mm=2.0,
     rubber=PRESETS["paper"],
@@ -78,7 +78,7 @@ def test_a_campaign_runs_every_pair_once_and_gives_its_formula_back() -> None:
     assert formula.openF_range_mm == (6.0, 14.0)
     assert formula.pressure_range_bar == (0.0, 2.0)
     assert formula.rubber is not None
-    assert formula.rubber.C10_MPa == PAPER_RUBBER.C10
+    assert formula.rubber.constants == PAPER_RUBBER.constants
 
 
 def test_the_file_says_how_good_it_is_and_holds_the_campaign(tmp_path: Path) -> None:

@@ -10,19 +10,21 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from fem.material import PAPER_RUBBER
 from profiletool.campaign import workers
-from profiletool.campaign.runs import Outcome, Task, key, run, to_json
+from profiletool.campaign.runs import DIED, JOINT_RUN, Outcome, Task, key, run, to_json
 from profiletool.campaign.store import Store
-from profiletool.campaign.workers import DIED, run_all
+from profiletool.campaign.workers import run_all
 from profiletool.errors import OutputError, UsageError
 from tests.campaign import fake
 from tests.campaign.processes import ROOT, alive, environment, until
 
+JointStore = Store[Task, Outcome]
 TASKS = [fake.task(n) for n in range(6)]
 OUTCOMES = [fake.outcome(task) for task in TASKS]
 kills = pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="needs SIGKILL")
@@ -38,11 +40,11 @@ def calls(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.fixture
-def store(tmp_path: Path) -> Store:
-    return Store(tmp_path / "store")
+def store(tmp_path: Path) -> JointStore:
+    return Store(tmp_path / "store", fake.FAKE_RUN)
 
 
-def files(store: Store) -> dict[str, bytes]:
+def files(store: JointStore) -> dict[str, bytes]:
     return {file.name: file.read_bytes() for file in store.folder.glob("*.json")}
 
 
@@ -51,12 +53,14 @@ def as_files(tasks: list[Task]) -> dict[str, bytes]:
 
 
 @pytest.mark.parametrize("count", [1, 2])
-def test_in_order_each_once_and_none_that_is_kept(calls: Path, store: Store, count: int) -> None:
+def test_in_order_each_once_and_none_that_is_kept(
+    calls: Path, store: JointStore, count: int
+) -> None:
     store.put(key(TASKS[4]), OUTCOMES[4])
     told: list[tuple[int, int]] = []
     tasks = [TASKS[5], TASKS[2], TASKS[4], TASKS[0], TASKS[2]]
     found = run_all(
-        tasks, store, workers=count, progress=lambda *n: told.append(n), run=fake.run
+        tasks, store, workers=count, progress=lambda *n: told.append(n)
     )  # fmt: skip
     assert found == [fake.outcome(task) for task in tasks]
     assert told[0] == (1, 5)
@@ -65,13 +69,13 @@ def test_in_order_each_once_and_none_that_is_kept(calls: Path, store: Store, cou
     assert len(told) == 4
     assert len(fake.calls(calls)) == 3
     assert files(store) == as_files([TASKS[n] for n in (0, 2, 4, 5)])
-    again = run_all(tasks, store, workers=count, progress=lambda *n: told.append(n), run=fake.run)
+    again = run_all(tasks, store, workers=count, progress=lambda *n: told.append(n))
     assert again == found
     assert told[4:] == [(5, 5)]
     assert len(fake.calls(calls)) == 3
 
 
-def test_the_longest_first(calls: Path, store: Store) -> None:
+def test_the_longest_first(calls: Path, store: JointStore) -> None:
     order: list[Task] = []
 
     def listed(task: Task) -> Outcome:
@@ -81,65 +85,69 @@ def test_the_longest_first(calls: Path, store: Store) -> None:
     short = Task(4.0, 150.0, 20.0, 2.0, PAPER_RUBBER, (0.2,))
     longer = Task(4.0, 84.0, 20.0, 2.0, PAPER_RUBBER, (0.2,))
     long = Task(4.0, 150.0, 20.0, 2.0, PAPER_RUBBER, (0.2,), "paper")
-    run_all([short, longer, TASKS[1], long], store, workers=1, run=listed)
+    listing = Store(store.folder, replace(fake.FAKE_RUN, run=listed))
+    run_all([short, longer, TASKS[1], long], listing, workers=1)
     assert order == [long, TASKS[1], longer, short]
 
 
-def test_each_is_kept_as_soon_as_it_comes(calls: Path, store: Store) -> None:
+def test_each_is_kept_as_soon_as_it_comes(calls: Path, store: JointStore) -> None:
     def kept(done: int, _: int) -> None:
         assert len(files(store)) == done
 
-    run_all(TASKS, store, workers=2, progress=kept, run=fake.run)
+    run_all(TASKS, store, workers=2, progress=kept)
 
 
-def test_real_runs_are_the_same_bit_for_bit_on_processes(store: Store) -> None:
+def test_real_runs_are_the_same_bit_for_bit_on_processes(store: JointStore) -> None:
     tasks = [Task(o, 120.0, 12.0, 1.5, PAPER_RUBBER, (0.1,)) for o in (4.0, 6.0)]
-    found = run_all(tasks, store, workers=2)
+    found = run_all(tasks, Store(store.folder, JOINT_RUN), workers=2)
     assert [to_json(f) for f in found] == [to_json(run(task)) for task in tasks]
     assert all(f.failure is None for f in found)
 
 
 @pytest.mark.parametrize("count", [1, 2])
 def test_a_bug_is_raised_and_what_was_finished_is_kept(
-    calls: Path, store: Store, count: int
+    calls: Path, store: JointStore, count: int
 ) -> None:
     last = fake.task(99, fake.BUGGY)
     with pytest.raises(ZeroDivisionError, match="a bug"):
-        run_all([last, *TASKS], store, workers=count, run=fake.run)
+        run_all([last, *TASKS], store, workers=count)
     assert len(fake.calls(calls, last)) == 1
     # One may still have been under way.
     assert len(files(store)) >= len(TASKS) - (count - 1)
     assert files(store).items() <= as_files(TASKS).items()
 
 
-def test_a_full_disk_ends_it(calls: Path, store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_full_disk_ends_it(
+    calls: Path, store: JointStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def full(_: int) -> None:
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(OutputError, match="No space left"):
-        run_all(TASKS, store, workers=1, run=fake.run)
+        run_all(TASKS, store, workers=1)
 
 
 def test_another_version_of_the_model_does_not_answer() -> None:
-    assert workers._answer(fake.outcome, key(TASKS[0]), TASKS[0]) == OUTCOMES[0]
+    kind = replace(JOINT_RUN, run=fake.outcome)
+    assert workers._answer(kind, key(TASKS[0]), TASKS[0]) == OUTCOMES[0]
     with pytest.raises(UsageError, match="another version"):
-        workers._answer(fake.outcome, key(TASKS[1]), TASKS[0])
+        workers._answer(kind, key(TASKS[1]), TASKS[0])
 
 
-def test_no_workers(store: Store) -> None:
+def test_no_workers(store: JointStore) -> None:
     with pytest.raises(ValueError, match="1 or more"):
         run_all(TASKS, store, workers=0)
 
 
 @kills
 def test_a_process_that_dies_loses_its_own_run_only(
-    calls: Path, store: Store, monkeypatch: pytest.MonkeyPatch
+    calls: Path, store: JointStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv(fake.SECONDS, "0.1")
     once, always = fake.task(50, fake.DEADLY_ONCE), fake.task(51, fake.DEADLY)
     tasks = [always, *TASKS, once]
-    found = run_all(tasks, store, workers=2, run=fake.run)
+    found = run_all(tasks, store, workers=2)
     assert found == [DIED, *OUTCOMES, fake.outcome(once)]
     assert DIED.failure == "its process died"
     count = Counter(mark.name.split("-")[0] for mark in fake.calls(calls))
@@ -150,7 +158,7 @@ def test_a_process_that_dies_loses_its_own_run_only(
 
 
 @kills
-def test_a_process_that_dies_while_idle_loses_nothing(calls: Path, store: Store) -> None:
+def test_a_process_that_dies_while_idle_loses_nothing(calls: Path, store: JointStore) -> None:
     quick, deadly = TASKS[1], fake.task(-1, fake.DEADLY_ONCE)
 
     def kill_idle(done: int, _: int) -> None:
@@ -158,12 +166,14 @@ def test_a_process_that_dies_while_idle_loses_nothing(calls: Path, store: Store)
             (ended,) = fake.calls(calls, suffix=".ended")
             os.kill(fake.pid_of(ended), signal.SIGKILL)
 
-    found = run_all([quick, deadly], store, workers=2, progress=kill_idle, run=fake.run)
+    found = run_all([quick, deadly], store, workers=2, progress=kill_idle)
     assert found == [fake.outcome(quick), fake.outcome(deadly)]
     assert len(working(calls)) == 3  # the second trial of the deadly one has a process of its own
 
 
-def start(calls: Path, store: Store, seconds: float, count: int = 12) -> subprocess.Popen[bytes]:
+def start(
+    calls: Path, store: JointStore, seconds: float, count: int = 12
+) -> subprocess.Popen[bytes]:
     """Start a campaign of two workers in a process of its own."""
     code = "from tests.campaign.fake import main; main()"
     # Python cleans up after a killed one, and says so, when the next may be under way.
@@ -190,7 +200,7 @@ def working(calls: Path) -> set[int]:
 
 
 @kills
-def test_a_campaign_killed_at_any_moment_goes_on(calls: Path, store: Store) -> None:
+def test_a_campaign_killed_at_any_moment_goes_on(calls: Path, store: JointStore) -> None:
     tasks, chance = [fake.task(n) for n in range(12)], random.Random(1)
     for stop in (1, 4, 8):
         campaign = start(calls, store, 0.15)
@@ -211,7 +221,7 @@ def test_a_campaign_killed_at_any_moment_goes_on(calls: Path, store: Store) -> N
 
 
 @pytest.fixture
-def campaign(calls: Path, store: Store) -> Iterator[subprocess.Popen[bytes]]:
+def campaign(calls: Path, store: JointStore) -> Iterator[subprocess.Popen[bytes]]:
     """A campaign whose runs take longer than anyone waits."""
     process = start(calls, store, 60.0)
     yield process
@@ -221,7 +231,7 @@ def campaign(calls: Path, store: Store) -> Iterator[subprocess.Popen[bytes]]:
 
 @kills
 def test_an_interrupted_campaign_ends_at_once(
-    campaign: subprocess.Popen[bytes], calls: Path, store: Store
+    campaign: subprocess.Popen[bytes], calls: Path, store: JointStore
 ) -> None:
     """As Ctrl-C does, every process hears of it; only the one that started the others ends."""
     until(lambda: len(fake.calls(calls)) == 2)

@@ -97,7 +97,7 @@ def test_a_design_has_the_tube_and_the_rubber_of_its_formula(
 ) -> None:
     tree = json.loads((made / "mine.json").read_text())
     tree["domain"] |= {"outer_diameter_mm": 16.0, "wall_mm": 1.6}
-    tree["domain"]["rubber"] |= {"C10_MPa": 0.03, "C01_MPa": 0.02, "K_MPa": 1.2}
+    tree["domain"]["rubber"] |= {"constants": {"C10": 0.03, "C01": 0.02, "K": 1.2}}
     (tmp_path / "soft.json").write_text(json.dumps(tree))
     result = call(
         "design", samples / "bulb.png", "--formula", "soft.json", "--no-verify", "--extrapolate"
@@ -105,7 +105,7 @@ def test_a_design_has_the_tube_and_the_rubber_of_its_formula(
     assert result.exit_code in (0, 6), result.stderr
     design = json.loads((tmp_path / "bulb_design" / "design.json").read_text())
     assert design["tube"]["outer_diameter_mm"] == 16.0
-    assert design["tube"]["rubber"]["C10_MPa"] == 0.03
+    assert design["tube"]["rubber"]["constants"]["C10"] == 0.03
     assert any("extrapolated" in warning for warning in design["warnings"])
 
 

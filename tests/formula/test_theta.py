@@ -107,7 +107,8 @@ def test_files_of_any_polynomial() -> None:
     by_hand = (1 + 2 * a + 3 * a * a) * P + 0.5 * a * P**2 + o * (a * a * P + 2 * P**2)
     assert theta_deg(formula, a, o, P) == pytest.approx(by_hand, rel=1e-14)
     assert formula.rubber is not None
-    assert formula.rubber.K_MPa == 3.0
+    assert formula.rubber.constants == {"C10": 0.1, "C01": 0.05, "K": 3.0}
+    assert formula.rubber.law == "mooney-rivlin"
 
 
 @pytest.mark.parametrize(
@@ -120,9 +121,28 @@ def test_terms_that_make_no_sense(terms: object) -> None:
         parse_formula(json.dumps(tree).encode(), "x.json")
 
 
-def test_rubber_that_makes_no_sense() -> None:
-    rubber = {"name": "x", "C10_MPa": -0.1, "C01_MPa": 0.05, "K_MPa": 3.0}
-    with pytest.raises(BadFormula, match="rubber"):
+def test_a_rubber_by_its_law() -> None:
+    rubber = {"name": "x", "law": "ogden", "constants": {"mu": [0.1, 0.2], "alpha": [2, 4], "K": 3}}
+    domain = {**FILE["domain"], "rubber": rubber}
+    formula = parse_formula(json.dumps({**FILE, "domain": domain}).encode(), "x.json")
+    assert formula.rubber is not None
+    assert formula.rubber.law == "ogden"
+    assert formula.rubber.constants == {"mu": (0.1, 0.2), "alpha": (2.0, 4.0), "K": 3.0}
+
+
+@pytest.mark.parametrize(
+    "rubber",
+    [
+        {"name": "x", "C10_MPa": 0.1, "C01_MPa": 0.05},
+        {"name": "x", "C10_MPa": True, "C01_MPa": 0.05, "K_MPa": 3.0},
+        {"name": "x", "law": "yeoh"},
+        {"name": "x", "law": 7, "constants": {}},
+        {"name": "x", "law": "yeoh", "constants": {"C10": "much"}},
+        {"name": "x", "law": "yeoh", "constants": {"C10": [1.0, None]}},
+    ],
+)
+def test_rubber_that_makes_no_sense(rubber: dict[str, object]) -> None:
+    with pytest.raises(BadFormula, match=r"rubber|finite"):
         parse_formula(
             json.dumps({**FILE, "domain": {**FILE["domain"], "rubber": rubber}}).encode(), "x.json"
         )

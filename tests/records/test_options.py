@@ -14,7 +14,7 @@ from profiletool.records.making import check_request, check_scale, request_of
 from profiletool.records.options import DESIGN, FLAGS, in_flags
 from profiletool.records.request import Request, ScaleRequest, TubeSpec
 
-NO_OPTIONS = {"file", "tube.thread_mm", "tube.turns", "tube.rubber"}
+NO_OPTIONS = {"file", "given", "tube.thread_mm", "tube.turns", "tube.rubber"}
 REQUEST = Request(Path("a.png"))
 
 

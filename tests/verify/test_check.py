@@ -12,7 +12,7 @@ import pytest
 import fem
 from fem.errors import NotConverged
 from fem.material import PAPER_RUBBER
-from formula.theta import RubberLaw
+from formula.rubber import RubberLaw
 from profiletool.bending.kinematics import deform
 from profiletool.errors import UnreadableInput
 from profiletool.files.design_json import load_design, to_json
@@ -230,14 +230,19 @@ def test_the_tube_is_of_its_own_rubber(samples: Path, tmp_path: Path) -> None:
     plain = short(samples)
     assert plain.tube.rubber is None
     assert actuator_of(plain).rubber == PAPER_RUBBER
-    stiff = RubberLaw("stiff", 0.1388, 0.1256, 6.434)
+    stiff = RubberLaw("stiff", "mooney-rivlin", {"C10": 0.1388, "C01": 0.1256, "K": 6.434})
     design = replace(plain, tube=replace(plain.tube, rubber=stiff))
     (tmp_path / "design.json").write_text(to_json(design))
     read = load_design(tmp_path / "design.json")
     assert read.tube.rubber == stiff
     law = actuator_of(read).rubber
     assert pytest.approx(2.0 * (PAPER_RUBBER.C10 + PAPER_RUBBER.C01)) == law.C10 + law.C01
-    broken = replace(design, tube=replace(design.tube, rubber=replace(stiff, C10_MPa=-1.0)))
+    broken = replace(
+        design,
+        tube=replace(
+            design.tube, rubber=replace(stiff, constants={**stiff.constants, "C10": -1.0})
+        ),
+    )
     (tmp_path / "broken.json").write_text(to_json(broken))
     with pytest.raises(UnreadableInput, match="rubber"):
         load_design(tmp_path / "broken.json")

@@ -1,0 +1,43 @@
+"""The law of a rubber: from its name and constants to what finite elements take."""
+
+from __future__ import annotations
+
+from fem.material import PAPER_RUBBER, Law, law
+from formula.rubber import RubberLaw
+
+_SHEAR_MPA = 2e-4, 2e3  # from gels to hard plastics
+_MOST_BULK_MPA = 1e6
+
+
+def law_of(rubber: RubberLaw | None) -> Law:
+    """Law of a rubber; None is the paper's.
+
+    Raises
+    ------
+    ValueError
+        There is no such law, or no rubber can have such constants.
+    """
+    if rubber is None:
+        return PAPER_RUBBER
+    made = law(rubber.law, rubber.constants)
+    low, high = _SHEAR_MPA
+    if not low <= made.shear_modulus <= high:
+        raise ValueError(
+            f"a shear modulus of {made.shear_modulus:.3g} MPa: no rubber can have such constants"
+        )
+    if not 0.5 * made.shear_modulus <= made.bulk_modulus <= _MOST_BULK_MPA:
+        raise ValueError(
+            f"a bulk modulus of {made.bulk_modulus:.3g} MPa: no rubber can have such constants"
+        )
+    return made
+
+
+def constants_text(rubber: RubberLaw) -> str:
+    """Constants of a rubber in words: "C10 0.0694, C01 0.0628, K 3.217 MPa"."""
+    values = (
+        (key, value if isinstance(value, tuple) else (value,))
+        for key, value in rubber.constants.items()
+    )
+    return (
+        ", ".join(f"{key} {' '.join(f'{v:.4g}' for v in value)}" for key, value in values) + " MPa"
+    )
