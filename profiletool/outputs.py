@@ -43,17 +43,10 @@ def files_of(
     Parameters
     ----------
     result : Result
-        Of `profiletool.design`.
     wish : Wish
-        Options of the cut template: variant, kerf in mm, date.
+        What the template shall be.
     paper : {"a4", "letter"}
-        Page of the PDFs.
-
-    Returns
-    -------
-    dict of str to bytes
-        Files of finite elements and the mask of a picture only where there are such. The same
-        result gives the same bytes of design.json and template.dxf.
+        Of the PDFs.
     """
     result = _in_flags(result)
     design, checked = result.design, result.check
