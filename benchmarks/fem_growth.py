@@ -22,21 +22,24 @@ def main() -> None:
     parser.add_argument("--threads", type=int, default=2, choices=(1, 2))
     parser.add_argument("--bar", type=float, default=1.5, help="pressure to inflate to")
     parser.add_argument("--out", type=Path, help="PNG to plot to")
+    parser.add_argument(
+        "--joints", type=int, nargs="+", default=JOINTS, help="numbers of joints, two at least"
+    )
     options = parser.parse_args()
     unit = calibration()
     print(machine())
     print(f"calibration kernel {unit:.4f} s; {options.threads} threads, to {options.bar:g} bar\n")
 
     lengths, times, each, rows = [], [], [], []
-    for count in JOINTS:
+    for count in options.joints:
         actuator = row_of_joints(count)
-        found: list[Solution] = []
+        runs: list[Solution] = []
 
-        def work(actuator=actuator, found=found) -> None:  # type: ignore[no-untyped-def]
-            found.append(solve(actuator, rising(options.bar, 1), threads=options.threads))
+        def work(actuator=actuator, runs=runs) -> None:  # type: ignore[no-untyped-def]
+            runs.append(solve(actuator, rising(options.bar, 1), threads=options.threads))
 
         seconds = median_of(options.repeat, work).middle
-        last = found[-1]
+        last = runs[-1]
         lengths.append(actuator.length)
         times.append(seconds)
         each.append(seconds / max(last.factorisations, 1))
@@ -49,8 +52,8 @@ def main() -> None:
     print(table(head, rows))
     exponent, offset = np.polyfit(np.log(lengths), np.log(times), 1)
     single, _ = np.polyfit(np.log(lengths), np.log(each), 1)
-    said = "ok" if exponent <= TARGET else "OVER"
-    print(f"\ntime ~ length^{exponent:.2f} (target {TARGET}: {said})")
+    verdict = "ok" if exponent <= TARGET else "OVER"
+    print(f"\ntime ~ length^{exponent:.2f} (target {TARGET}: {verdict})")
     print(f"time of a factorisation ~ length^{single:.2f}")
     if options.out is not None:
         plot(options.out, np.array(lengths), np.array(times), exponent, offset)

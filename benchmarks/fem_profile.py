@@ -1,4 +1,4 @@
-"""Where the time of the bulb's run goes, and how far that is from what the arithmetic needs."""
+"""The time of a run by stages, and how far it is from what the arithmetic needs."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from collections import defaultdict
 from pathlib import Path
 from typing import Any
 
-from _common import bulb, dgemm_rate, machine, rising, table
+from _common import bulb, dgemm_rate, joint, machine, rising, table
 
 import fem
 from fem import blas, solid
@@ -53,8 +53,8 @@ class Count:
             rubber: Any, reference: Any, heights: Any, x: Any, *rest: Any, **more: Any
         ) -> Any:
             if len(rest) > 1 and rest[1] is not None:
-                rows, entries = reference.pairs.shape
-                self.stiffness += 2.0 * 6.0 * rows * entries * x.shape[2]
+                columns, rows, entries = reference.pairs.shape
+                self.stiffness += 2.0 * 6.0 * columns * rows * entries * x.shape[3]
             return respond(rubber, reference, heights, x, *rest, **more)
 
         self._ours = (counted_cholesky, counted_lower, counted_gram, counted_respond)
@@ -75,6 +75,8 @@ class Count:
 def stage_of(function: Function) -> str | None:
     """Name the stage of a function of the engine; None for all others."""
     path = Path(function[0])
+    if path.is_relative_to(HOME / "material"):
+        return "material"
     return STAGES.get(function[2], path.stem) if path.parent == HOME else None
 
 
@@ -102,9 +104,12 @@ def main() -> None:
     """Profile on one thread, count the arithmetic, and time without the profiler."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--functions", type=int, default=0, help="list this many functions too")
+    parser.add_argument("--bar", type=float, default=1.9, help="pressure to inflate to")
+    parser.add_argument("--joint", action="store_true", help="one joint in place of the bulb")
     options = parser.parse_args()
     print(machine())
-    actuator, pressures = bulb(), rising(1.9, 1)
+    actuator = joint() if options.joint else bulb()
+    pressures = rising(options.bar, 1)
     solve(actuator, pressures, threads=1)
     seconds = {}
     for threads in (1, 2):
@@ -124,8 +129,9 @@ def main() -> None:
         if value > 0.002 * total
     ]
     print(
-        f"\nbulb to 1.9 bar: {solution.factorisations} factorisations, "
-        f"{solution.newton_iterations} Newton steps, {solution.mesh.elements} bricks\n"
+        f"\n{'one joint' if options.joint else 'bulb'} to {options.bar:g} bar: "
+        f"{solution.factorisations} factorisations, {solution.newton_iterations} Newton steps, "
+        f"{solution.mesh.elements} bricks\n"
     )
     print(table(("one thread, profiled", "CPU s", "%"), rows))
     rate = dgemm_rate()

@@ -39,7 +39,7 @@ class Outcome:
     residual: float
     energy_error: float
     least_J: float
-    said: str
+    reason: str
     about: str
 
 
@@ -69,21 +69,22 @@ def run(task: tuple[int, int]) -> Outcome:
     seed, number = task
     actuator, stiff = random_actuator(seed, number)
     asked = [0.05 * k * stiff for k in range(1, 5)]
-    kind, said, reached, states = "ended", "", 0.0, tuple[State, ...]()
+    kind, reason, reached, states = "ended", "", 0.0, tuple[State, ...]()
     begun = time.perf_counter()
     try:
         solution = solve(actuator, asked, threads=1)
         states = solution.states[1:]
         reached = asked[-1]
         if solution.critical is not None:
-            kind, said = "critical", solution.critical.kind
+            kind, reason = "critical", solution.critical.kind
             reached = solution.critical.pressure
         elif len(states) != len(asked):
-            kind, said = "wrong", f"{len(states)} of {len(asked)} states"
+            kind, reason = "wrong", f"{len(states)} of {len(asked)} states"
     except NotConverged as error:
-        kind, said, reached = "NotConverged", str(error), error.reached
+        kind, reason, reached = "NotConverged", str(error), error.reached
+        states = error.solution.states[1:] if error.solution is not None else ()
     except Exception as error:  # whatever it is, it is the finding
-        kind, said = "crashed", repr(error)
+        kind, reason = "crashed", repr(error)
     seconds = time.perf_counter() - begun
     residual = max((s.residual for s in states), default=0.0)
     energy = max((s.energy_error for s in states), default=0.0)
@@ -99,7 +100,7 @@ def run(task: tuple[int, int]) -> Outcome:
         if not fine
     ]
     if broken:
-        kind, said = "wrong", ", ".join(broken)
+        kind, reason = "wrong", ", ".join(broken)
     about = (
         f"D {actuator.diameter:.1f}, s/D {actuator.wall / actuator.diameter:.3f}, "
         f"{len(actuator.windows)} joints, rubber x {stiff:.2f}"
@@ -113,7 +114,7 @@ def run(task: tuple[int, int]) -> Outcome:
         residual,
         energy,
         least,
-        said,
+        reason,
         about,
     )
 
@@ -135,13 +136,13 @@ def main() -> None:
         for outcome in pool.map(run, tasks):
             outcomes.append(outcome)
             if outcome.kind not in ("ended", "critical"):
-                print(f"  {outcome.number}: {outcome.kind}: {outcome.said}", flush=True)
+                print(f"  {outcome.number}: {outcome.kind}: {outcome.reason}", flush=True)
     counts = Counter(o.kind for o in outcomes)
     kinds = ("ended", "critical", "NotConverged", "wrong", "crashed")
     print(f"\nseed {options.seed}, {time.perf_counter() - begun:.0f} s")
     print(table(("", "runs"), [(kind, counts[kind]) for kind in kinds]))
     good = counts["ended"] + counts["critical"]
-    for kind, number in Counter(o.said for o in outcomes if o.kind == "critical").items():
+    for kind, number in Counter(o.reason for o in outcomes if o.kind == "critical").items():
         print(f"  critical by {kind}: {number}")
 
     lists = [

@@ -10,6 +10,7 @@ from statistics import median
 
 from _common import bulb, calibration, joint, machine, median_of, rising, skew, table
 
+from fem.actuator import Actuator
 from fem.solver import solve
 
 ALPHA, OPENF = (84.0, 108.0, 120.0, 132.0, 156.0), (6.0, 8.0, 10.0, 12.0, 14.0)
@@ -20,7 +21,7 @@ import resource, sys
 sys.path.insert(0, sys.argv[1])
 from _common import bulb
 from fem.solver import solve
-solve(bulb(), [0.19], threads=int(sys.argv[2]))
+solve(bulb(), [0.19 * float(sys.argv[3])], threads=int(sys.argv[2]))
 peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 print(peak * (1 if sys.platform == "darwin" else 1024) / 1e6)
 """
@@ -47,18 +48,20 @@ def main() -> None:
     parser.add_argument("--repeat", type=int, default=5, help="runs to take the median of")
     parser.add_argument("--threads", type=int, default=2, choices=(1, 2))
     parser.add_argument("--no-campaign", action="store_true", help="leave out the 25 joints")
+    parser.add_argument("--share", type=float, default=1.0, help="of each pressure to go to")
     options = parser.parse_args()
     repeat, threads = options.repeat, options.threads
 
     # First of all: on Linux a new process may begin with the peak of the one that started it.
-    memory = ask_python(_MEMORY, sys.path[0], str(threads))
+    memory = ask_python(_MEMORY, sys.path[0], str(threads), str(options.share))
     imports = median(ask_python(_IMPORT) for _ in range(repeat))
     unit = calibration()
     print(machine())
     print(f"calibration kernel {unit:.4f} s; {threads} threads, median of {repeat}\n")
 
-    def run(actuator: Callable[[], object], last: float, count: int) -> Callable[[], object]:
-        return lambda: solve(actuator(), rising(last, count), threads=threads)  # type: ignore[arg-type]
+    def run(actuator: Callable[[], Actuator], last: float, count: int) -> Callable[[], object]:
+        pressures = rising(options.share * last, count)
+        return lambda: solve(actuator(), pressures, threads=threads)
 
     cases: list[tuple[str, Callable[[], object], float | None, float | None, int]] = [
         ("one joint to 2.0 bar, ten pressures", run(joint, 2.0, 10), None, None, repeat),
@@ -84,8 +87,8 @@ def main() -> None:
 
 def judged(value: float, aim: float | None, target: float | None) -> tuple[str, str, str]:
     """Aim, target, and whether the target is met."""
-    said = "" if target is None else "ok" if value <= target else "OVER"
-    return "" if aim is None else f"{aim:g}", "" if target is None else f"{target:g}", said
+    verdict = "" if target is None else "ok" if value <= target else "OVER"
+    return "" if aim is None else f"{aim:g}", "" if target is None else f"{target:g}", verdict
 
 
 if __name__ == "__main__":

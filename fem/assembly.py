@@ -186,15 +186,15 @@ class System:
         loads = nodal.reshape(len(layers), -1)
         result = np.zeros((len(layers), len(layers)))
         T = self.plug.motions(x)
-        left: dict[Part, tuple[IntArray, FloatArray]] = {}
+        rest: dict[Part, tuple[IntArray, FloatArray]] = {}
 
         def reduce(part: Part) -> None:
-            left[part] = part.compliance(layers, loads, T, result)
+            rest[part] = part.compliance(layers, loads, T, result)
 
         self._both(reduce)
         if self.middle > 0:
-            which = np.concatenate([left[part][0] for part in self._parts])
-            rows = np.concatenate([left[part][1] for part in self._parts])
+            which = np.concatenate([rest[part][0] for part in self._parts])
+            rows = np.concatenate([rest[part][1] for part in self._parts])
             self._last.forward(rows)
             result[np.ix_(which, which)] += rows @ rows.T
         return result

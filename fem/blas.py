@@ -3,7 +3,9 @@
 numpy lets go of the interpreter's lock in products; scipy's wrappers of Cholesky and triangular
 solves do not, so these are called through the pointers that scipy exports (see the
 documentation of scipy.linalg.cython_blas). At the sizes of one cross-section BLAS's own threads
-make the whole several times slower; they are held to one while a solver works.
+make the whole several times slower; they are held to one while a solver works. (threadpoolctl
+3.8 is no help there: with OpenBLAS only the thread that first set the count may change it, so that
+of two solvers in two threads the one that ends last could not give the count back.)
 """
 
 from __future__ import annotations
@@ -99,7 +101,7 @@ def subtract_gram(C: FloatArray, B: FloatArray) -> None:
 @cache
 def _thread_switches() -> tuple[tuple[Any, Any], ...]:
     """Getter and setter of the thread count of every OpenBLAS that numpy and scipy brought."""
-    found = []
+    switches = []
     for package in (np, scipy):
         home = Path(str(package.__file__)).parent
         for folder in (home.parent / f"{package.__name__}.libs", home / ".dylibs"):
@@ -111,8 +113,8 @@ def _thread_switches() -> tuple[tuple[Any, Any], ...]:
                         get = getattr(library, name % "get", None)
                         put = getattr(library, name % "set", None)
                         if get is not None and put is not None:
-                            found.append((get, put))
-    return tuple(found)
+                            switches.append((get, put))
+    return tuple(switches)
 
 
 class _Hold:

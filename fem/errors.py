@@ -8,10 +8,6 @@ FemError
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from fem.solution import Solution
 
 
 class FemError(Exception):
@@ -54,7 +50,7 @@ class NotConverged(FemError):
         All that was tried, in order.
     reached : float
         The highest pressure with a converged state, MPa.
-    solution : Solution or None
+    solution : fem.solution.Solution or None
         The states that were reached, at rest and at asked pressures; None where nobody kept them.
     """
 
@@ -63,7 +59,7 @@ class NotConverged(FemError):
         message: str,
         history: tuple[Attempt, ...],
         reached: float,
-        solution: Solution | None = None,
+        solution: object = None,
     ) -> None:
         super().__init__(message)
         self.history = history

@@ -116,15 +116,15 @@ def _merged(edges: list[float], apart: float, whole: float) -> list[float]:
 
 def _graded(length: float, first: float, last: float, most: float, growth: float) -> FloatArray:
     """Sizes that grow from both ends, shrunk or a little stretched to fill the length."""
-    left, right = list[float](), list[float]()
+    before, behind = list[float](), list[float]()
     a, b, total = min(first, most), min(last, most), 0.0
     while total * (1.0 + _GIVE) < length * (1.0 - 1e-9):
         if a <= b:
-            left.append(a)
+            before.append(a)
             total += a
             a = min(growth * a, most)
         else:
-            right.append(b)
+            behind.append(b)
             total += b
             b = min(growth * b, most)
-    return np.array(left + right[::-1]) * (length / total)
+    return np.array(before + behind[::-1]) * (length / total)

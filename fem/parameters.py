@@ -29,20 +29,21 @@ class Parameter:
     change: Callable[[Actuator, float], Actuator]
 
 
-def families(count: int) -> tuple[tuple[Parameter, ...], ...]:
+def families(count: int, *, apart: bool = False) -> tuple[tuple[Parameter, ...], ...]:
     """Families of parameters that can be changed at once: no two have a ring in common.
 
     In order: each window's alpha, all windows' lengths, all wrapped sectors' lengths, the wall;
-    for ``count`` windows.
+    for ``count`` windows; each parameter by itself where they are to be kept ``apart``.
     """
     windows, wrapped = range(1, 2 * count, 2), range(0, 2 * count + 1, 2)
-    return (
+    together: tuple[tuple[Parameter, ...], ...] = (
         # The bricks of the whole tube end where the sectors do: they move with each alpha.
         *((Parameter(None, ANGLE_STEP, _alpha(k // 2)),) for k in windows),
         tuple(Parameter(k, LENGTH_STEP, _stretch(k)) for k in windows),
         tuple(Parameter(k, LENGTH_STEP, _stretch(k)) for k in wrapped),
         (Parameter(None, LENGTH_STEP, _thicken),),
     )
+    return tuple((p,) for family in together for p in family) if apart else together
 
 
 def _thicken(actuator: Actuator, amount: float) -> Actuator:

@@ -158,8 +158,8 @@ class Part:
             rows = self._rows(layer, rings, mids, plug)
             if positive and pivot.signs is not None:
                 rows *= pivot.signs
-            known = ahead @ self.couplings[layer].T
-            rows -= known if pivot.signs is None else known * pivot.signs
+            coupled = ahead @ self.couplings[layer].T
+            rows -= coupled if pivot.signs is None else coupled * pivot.signs
             pivot.backward(rows)
             ahead = rows[:, mids.shape[2] :]
             self._put(layer, rows, rings, mids, plug)

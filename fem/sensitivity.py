@@ -138,8 +138,8 @@ def sensitivities(
             push = pressure * np.linalg.norm(forces.volume_gradient)
             if np.linalg.norm(forces.residual(pressure)) > 1e-4 * push:
                 raise FemError("these positions are not in equilibrium")
-
-            changes = families(count)
+            # What is fixed in space may feel a segment's length all along the tube.
+            changes = families(count, apart=bool(extra))
             rhs = [forces.volume_gradient]
             for family in changes:
                 rhs += _pulls(system, x, pressure, family)
@@ -194,7 +194,10 @@ def _pulls(
         ends.append(System(near, 1, system.extra).forces(at))
     residuals = [forces.residual(pressure) for forces in ends]
     pull = -(residuals[0] - residuals[1]) / (2.0 * step)
-    return [np.where(_felt(system, parameter.segment), pull, 0.0) for parameter in family]
+    return [
+        np.where(_felt(system, None if system.extra else parameter.segment), pull, 0.0)
+        for parameter in family
+    ]
 
 
 def _felt(system: System, segment: int | None) -> NDArray[np.bool_]:

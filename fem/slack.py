@@ -72,8 +72,8 @@ class Switching:
         used = np.zeros_like(lam)
         for _ in range(_ROUNDS):
             e = self._strain(du)
-            off = gauze.tension_law(law, lam + e)[1] - force - self._slope * e - used
-            load = np.abs(w * off) * self._size
+            excess = gauze.tension_law(law, lam + e)[1] - force - self._slope * e - used
+            load = np.abs(w * excess) * self._size
             if np.linalg.norm(load) <= _ENOUGH * np.linalg.norm(rhs):
                 return du
             if not self._choose(load, _ENOUGH * float(np.linalg.norm(rhs))):
@@ -94,8 +94,8 @@ class Switching:
         """Add the points that matter; False where they are too many for this to pay."""
         sizes = np.sort(load, axis=None)
         # Leave out the smallest, as many as together stay within half of what is let pass.
-        kept = np.searchsorted(np.cumsum(sizes**2), (0.5 * rest) ** 2)
-        chosen = self._chosen | (load >= sizes[min(int(kept), sizes.size - 1)])
+        spared = np.searchsorted(np.cumsum(sizes**2), (0.5 * rest) ** 2)
+        chosen = self._chosen | (load >= sizes[min(int(spared), sizes.size - 1)])
         points = np.flatnonzero(chosen)
         if len(points) > _MOST:
             return False

@@ -30,12 +30,12 @@ def transfer(old: Mesh, x: FloatArray, new: Mesh) -> FloatArray:
     -------
     (layers + 1, ring + mid, 3) mm
     """
-    found = np.zeros_like(new.X)
+    positions = np.zeros_like(new.X)
     mid = slice(new.ring, None)
-    found[:, : new.ring] = _around(old, x, new.X[0, : new.ring], -1.0)
-    found[:-1, mid] = _around(old, x, new.X[0, mid], 0.0)[:-1]
-    _lengthen(old, new, found)
-    return settle(found, new)
+    positions[:, : new.ring] = _around(old, x, new.X[0, : new.ring], -1.0)
+    positions[:-1, mid] = _around(old, x, new.X[0, mid], 0.0)[:-1]
+    _lengthen(old, new, positions)
+    return settle(positions, new)
 
 
 def settle(x: FloatArray, new: Mesh, old: Mesh | None = None) -> FloatArray:
@@ -43,17 +43,17 @@ def settle(x: FloatArray, new: Mesh, old: Mesh | None = None) -> FloatArray:
 
     ``old`` is the mesh that says what the plug's positions mean, by default the new one.
     """
-    X, found = new.X, x.copy()
+    X, positions = new.X, x.copy()
     old = old or new
-    found[-1, new.ring :] = X[-1, new.ring :]
-    found[0, : new.ring] = X[0, : new.ring]
+    positions[-1, new.ring :] = X[-1, new.ring :]
+    positions[0, : new.ring] = X[0, : new.ring]
     # The plug stays rigid to the last bit; its outer nodes say where it is, whatever the wall.
     rest, now = old.X[-1, old.outer_ring], x[-1, old.outer_ring]
     R = best_rotation(rest - rest.mean(axis=0), now - now.mean(axis=0))
     arm = X[-1, : new.ring] - rest.mean(axis=0)
     arm[:, 2] = 0.0  # both are level at rest, wherever along the tube
-    found[-1, : new.ring] = now.mean(axis=0) + arm @ R.T
-    return found
+    positions[-1, : new.ring] = now.mean(axis=0) + arm @ R.T
+    return positions
 
 
 def _around(old: Mesh, x: FloatArray, at: FloatArray, zeta: float) -> FloatArray:

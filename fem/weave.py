@@ -123,8 +123,8 @@ def _single_lines(
             # A thread on the border of two faces counts half in each.
             share = 0.5 if abs(abs(eta) - 1.0) < 1e-9 else 1.0
             if window is not None:
-                off = (phi - window.center + np.pi) % (2.0 * np.pi) - np.pi
-                if abs(off) > 0.5 * (window.alpha + gauze.allowance) + 1e-9:
+                apart = (phi - window.center + np.pi) % (2.0 * np.pi) - np.pi
+                if abs(apart) > 0.5 * (window.alpha + gauze.allowance) + 1e-9:
                     continue
             row.append((float(np.clip(eta, -1.0, 1.0)), share * step * radius))
         rows.append(row)

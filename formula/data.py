@@ -34,13 +34,13 @@ class Data:
         alpha, openF, P = np.meshgrid(
             self.alpha_deg, self.openF_mm, self.pressure_bar, indexing="ij"
         )
-        known = np.isfinite(self.theta_deg)
-        return alpha[known], openF[known], P[known], self.theta_deg[known]
+        mask = np.isfinite(self.theta_deg)
+        return alpha[mask], openF[mask], P[mask], self.theta_deg[mask]
 
     @property
     def run(self) -> NDArray[np.int64]:
         """Number of the run that every point of ``points`` comes from, (M,)."""
         A, O, N = self.theta_deg.shape  # noqa: E741
         number = np.broadcast_to(np.arange(A * O).reshape(A, O, 1), (A, O, N))
-        found: NDArray[np.int64] = number[np.isfinite(self.theta_deg)]
-        return found
+        numbers: NDArray[np.int64] = number[np.isfinite(self.theta_deg)]
+        return numbers

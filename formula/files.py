@@ -83,8 +83,8 @@ def read_bytes(name: str) -> bytes:
             data = file.read(_MOST_BYTES + 1)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
-        known = ", ".join(ours)
-        raise BadFormula(f"cannot read {path}: {reason}; by name there are {known}") from error
+        names = ", ".join(ours)
+        raise BadFormula(f"cannot read {path}: {reason}; by name there are {names}") from error
     if len(data) > _MOST_BYTES:
         raise BadFormula(
             f"{path} is larger than {_MOST_BYTES / 1e6:g} MB, too large for a formula file"
@@ -192,14 +192,14 @@ def _terms(value: object, file: str) -> Terms:
     blocks = [rows(block, 1, _MOST_POWERS) for block in rows(value, 1, _MOST_POWERS)]
     if len({len(block) for block in blocks}) != 1:
         raise BadFormula(f'{file}: "terms" have not the same powers of the pressure throughout')
-    found = []
+    terms = []
     for block in blocks:
         lines = []
         for row in block:
             c, b, a = (_number({"terms": v}, "terms", file) for v in rows(row, 3, 3))
             lines.append((c, b, a))
-        found.append(tuple(lines))
-    return tuple(found)
+        terms.append(tuple(lines))
+    return tuple(terms)
 
 
 def _mapping(tree: dict[str, Any], key: str, file: str) -> dict[str, Any]:

@@ -112,26 +112,26 @@ def fit_paper(data: Data) -> PaperFit:
     m, c, line_R2 = (np.full((A, N), np.nan) for _ in range(3))
     for i, n in product(range(A), range(N)):
         theta = data.theta_deg[i, :, n]
-        known = np.isfinite(theta)
-        if known.sum() >= 2:
+        mask = np.isfinite(theta)
+        if mask.sum() >= 2:
             basis = np.column_stack([data.openF_mm, np.ones_like(data.openF_mm)])
-            (m[i, n], c[i, n]), line_R2[i, n] = _least(basis[known], theta[known])
+            (m[i, n], c[i, n]), line_R2[i, n] = _least(basis[mask], theta[mask])
     P = data.pressure_bar
     a1, a2, a3, slope_R2, intercept_R2 = (np.full(A, np.nan) for _ in range(5))
     for i in range(A):
-        known = np.isfinite(m[i])
-        if known.sum() >= 2:
-            p = P[known]
-            (a1[i], a2[i]), slope_R2[i] = _least(np.column_stack([p**2, p]), m[i, known])
-            (a3[i],), intercept_R2[i] = _least(p[:, None], c[i, known])
-    known = np.isfinite(a1)
-    if known.sum() < 3:
+        mask = np.isfinite(m[i])
+        if mask.sum() >= 2:
+            p = P[mask]
+            (a1[i], a2[i]), slope_R2[i] = _least(np.column_stack([p**2, p]), m[i, mask])
+            (a3[i],), intercept_R2[i] = _least(p[:, None], c[i, mask])
+    mask = np.isfinite(a1)
+    if mask.sum() < 3:
         raise BadFormula("formula (9) needs runs at three alphas with two openF each, or more")
-    alpha = data.alpha_deg[known]
+    alpha = data.alpha_deg[mask]
     square = np.column_stack([alpha**2, alpha, np.ones_like(alpha)])
-    (c11, c12, c13), a1_R2 = _least(square, a1[known])
-    (c21, c22, c23), a2_R2 = _least(square, a2[known])
-    (c31, c32), a3_R2 = _least(square[:, 1:], a3[known])
+    (c11, c12, c13), a1_R2 = _least(square, a1[mask])
+    (c21, c22, c23), a2_R2 = _least(square, a2[mask])
+    (c31, c32), a3_R2 = _least(square[:, 1:], a3[mask])
     return PaperFit(
         tuple(float(v) for v in (c11, c12, c13, c21, c22, c23, c31, c32)),
         m, c, line_R2, a1, a2, a3, slope_R2, intercept_R2, a1_R2, a2_R2, a3_R2,
@@ -148,32 +148,35 @@ def candidates(data: Data) -> tuple[Candidate, ...]:
     """Fit every form that the campaign has runs enough for, the best validated first."""
     alphas, cuts, pressures = (len(np.unique(values)) for values in data.points[:3])
     most = min(2, alphas - 1)
-    found = []
+    fits = []
     for J, K in product(_OPENF, _PRESSURE):
         if alphas == 0 or cuts <= J or pressures < K:
             continue
         form = (J, K, most)
         everything = np.ones(len(data.points[3]), dtype=bool)
-        coefficients, scales, off = _solve(data, form, everything)
-        apart = np.empty_like(off)
+        coefficients, scales, residuals = _solve(data, form, everything)
+        apart = np.empty_like(residuals)
         runs = data.run
         for run in np.unique(runs):
             left_out = runs == run
             apart[left_out] = _solve(data, form, ~left_out)[2][left_out]
-        found.append(
+        fits.append(
             Candidate(
-                form, _terms(coefficients, scales, form), _errors(data, off), _errors(data, apart)
+                form,
+                _terms(coefficients, scales, form),
+                _errors(data, residuals),
+                _errors(data, apart),
             )
         )
-    if not found:
+    if not fits:
         raise BadFormula("a formula needs runs at two openF and two pressures, or more")
-    return tuple(sorted(found, key=lambda candidate: candidate.validated.rms))
+    return tuple(sorted(fits, key=lambda candidate: candidate.validated.rms))
 
 
-def best(found: tuple[Candidate, ...]) -> Candidate:
+def best(fits: tuple[Candidate, ...]) -> Candidate:
     """Choose the smallest form of those that are as good as the best."""
-    limit = _AS_GOOD * found[0].validated.rms
-    return min((c for c in found if c.validated.rms <= limit), key=lambda c: c.size)
+    limit = _AS_GOOD * fits[0].validated.rms
+    return min((c for c in fits if c.validated.rms <= limit), key=lambda c: c.size)
 
 
 def _solve(
@@ -207,20 +210,22 @@ def _terms(coefficients: FloatArray, tops: FloatArray, form: tuple[int, int, int
 
 def _least(basis: FloatArray, values: FloatArray) -> tuple[FloatArray, float]:
     """Least squares and its R² (about the mean, as spreadsheets give it)."""
-    found: FloatArray = np.asarray(np.linalg.lstsq(basis, values, rcond=None)[0], dtype=np.float64)
-    left = float(((values - basis @ found) ** 2).sum())
+    coefficients: FloatArray = np.asarray(
+        np.linalg.lstsq(basis, values, rcond=None)[0], dtype=np.float64
+    )
+    rest = float(((values - basis @ coefficients) ** 2).sum())
     about = float(((values - values.mean()) ** 2).sum())
-    return found, 1.0 - left / about if about > 0.0 else 1.0
+    return coefficients, 1.0 - rest / about if about > 0.0 else 1.0
 
 
-def _errors(data: Data, off: FloatArray) -> Errors:
+def _errors(data: Data, residuals: FloatArray) -> Errors:
     P = data.points[2]
     by_pressure = []
     for pressure in data.pressure_bar:
-        here = off[pressure == P]
+        here = residuals[pressure == P]
         by_pressure.append((_rms(here), float(np.abs(here).max(initial=0.0))))
-    return Errors(_rms(off), float(np.abs(off).max(initial=0.0)), tuple(by_pressure))
+    return Errors(_rms(residuals), float(np.abs(residuals).max(initial=0.0)), tuple(by_pressure))
 
 
-def _rms(off: FloatArray) -> float:
-    return float(np.sqrt(np.mean(off**2))) if off.size else 0.0
+def _rms(residuals: FloatArray) -> float:
+    return float(np.sqrt(np.mean(residuals**2))) if residuals.size else 0.0

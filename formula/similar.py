@@ -43,8 +43,8 @@ def carried(
     # theta / P is even smoother than theta, and makes theta 0 at 0.
     pressures = known.pressure_bar
     share = _along(pressures, theta / pressures, P, axis=2, below=True)
-    found: FloatArray = share * P
-    return found
+    angles: FloatArray = share * P
+    return angles
 
 
 def correction_runs(alpha_deg: FloatArray, openF_mm: FloatArray) -> list[tuple[int, int]]:
@@ -83,8 +83,8 @@ def corrected(guess: FloatArray, few: Data, whole: Data) -> Data:
         terms = (np.ones_like(alpha), alpha, openF, alpha**2, alpha * openF)
         told = [term for term in terms if np.abs(term[made]).max() > 0.0]
         basis = np.stack(told[: int(made.sum())], axis=-1)
-        found = np.linalg.lstsq(basis[made], ratio[made], rcond=None)[0]
-        theta[..., n] = np.where(made, few.theta_deg[..., n], guess[..., n] * (basis @ found))
+        factors = np.linalg.lstsq(basis[made], ratio[made], rcond=None)[0]
+        theta[..., n] = np.where(made, few.theta_deg[..., n], guess[..., n] * (basis @ factors))
     return Data(whole.alpha_deg, whole.openF_mm, whole.pressure_bar, theta)
 
 
@@ -104,8 +104,8 @@ def _longer(x: FloatArray, theta: FloatArray, at: FloatArray) -> tuple[FloatArra
 
 def _unit(values: FloatArray) -> FloatArray:
     spread = float(np.ptp(values))
-    found: FloatArray = (values - values.mean()) / (spread if spread > 0.0 else 1.0)
-    return found
+    scaled: FloatArray = (values - values.mean()) / (spread if spread > 0.0 else 1.0)
+    return scaled
 
 
 def _along(
@@ -113,19 +113,19 @@ def _along(
 ) -> FloatArray:
     """Interpolate along an axis; NaN outside x, but that ``below`` it goes on as it begins."""
     if len(x) == 1:
-        found = np.repeat(values, len(at), axis=axis)
+        inside = np.repeat(values, len(at), axis=axis)
         outside = np.abs(at - x[0]) > 1e-9 * max(abs(float(x[0])), 1.0)
     elif np.isfinite(values).all() and len(x) >= 4:
-        found = make_interp_spline(x, values, k=3, axis=axis)(at)
+        inside = make_interp_spline(x, values, k=3, axis=axis)(at)
         outside = (at > x[-1] * (1.0 + 1e-9)) | (at < x[0] * (1.0 - 1e-9))
     else:
-        found = _gappy(x, values, at, axis)
+        inside = _gappy(x, values, at, axis)
         outside = (at > x[-1] * (1.0 + 1e-9)) | (at < x[0] * (1.0 - 1e-9))
     if below:
         outside = outside & (at > x[0])
     shape = [1, 1, 1]
     shape[axis] = len(at)
-    result: FloatArray = np.where(outside.reshape(shape), np.nan, found)
+    result: FloatArray = np.where(outside.reshape(shape), np.nan, inside)
     return result
 
 
@@ -133,10 +133,10 @@ def _gappy(x: FloatArray, values: FloatArray, at: FloatArray, axis: int) -> Floa
     """Interpolate rows that have gaps, each by what it has; NaN beyond its own ends."""
 
     def row(y: FloatArray) -> FloatArray:
-        known = np.isfinite(y)
-        if known.sum() < 2:
+        mask = np.isfinite(y)
+        if mask.sum() < 2:
             return np.full(len(at), np.nan)
-        found: FloatArray = PchipInterpolator(x[known], y[known], extrapolate=False)(at)
-        return found
+        interpolant: FloatArray = PchipInterpolator(x[mask], y[mask], extrapolate=False)(at)
+        return interpolant
 
     return np.apply_along_axis(row, axis, values)

@@ -132,8 +132,8 @@ def beyond(
             np.broadcast_arrays(alpha_deg, openF_mm, pressure_bar), ranges, strict=True
         )
     ]
-    found: NDArray[np.bool_] = np.any(outside, axis=0)
-    return found
+    anywhere: NDArray[np.bool_] = np.any(outside, axis=0)
+    return anywhere
 
 
 def check_range(

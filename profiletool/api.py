@@ -11,31 +11,33 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from formula.theta import Formula, theta_deg
-from profiletool.bending.kinematics import Bend, deform
-from profiletool.campaign.derive import CampaignPlan, Derivation, check_plan, derive, load_base
+from profiletool.campaign.derive import (
+    Base,
+    CampaignPlan,
+    Derivation,
+    check_plan,
+    derive,
+    load_base,
+)
 from profiletool.campaign.runs import JOINT_RUN
 from profiletool.campaign.store import Store, default_folder
 from profiletool.campaign.workers import run_all
 from profiletool.errors import UsageError
 from profiletool.files.formula import read_formula
-from profiletool.joints.misfit import misfit_to
 from profiletool.joints.optimal_method import optimal_plan
 from profiletool.joints.paper_method import paper_plan
 from profiletool.joints.plan import Plan
-from profiletool.joints.windows import best_seam
 from profiletool.pipeline import Result, run
 from profiletool.profile.drawing.load import drawing_of
-from profiletool.records.design import Design, Fit, FormulaRef
+from profiletool.records.design import Design
 from profiletool.records.making import check_request, request_of
 from profiletool.records.picture import Picture
 from profiletool.records.profile import Drawing, Profile
 from profiletool.records.request import Request
-from profiletool.records.side import side_sign
-from profiletool.records.units import FloatArray
 from profiletool.subject.find import Subject
 from profiletool.subject.find import find_subject as find
 from profiletool.verify.check import Check, check
+from profiletool.verify.recompute import recomputed
 
 Source = str | PathLike[str] | NDArray[Any] | Picture | Drawing | Profile
 Say = Callable[[str], None]
@@ -147,51 +149,16 @@ def verify_design(
     Raises
     ------
     UnreadableInput
-        The file holds no formula.
+        The file holds no formula, or a joint bends out of the plane, which no formula follows.
     """
     points = np.asarray(target.points if isinstance(target, Profile) else target, dtype=float)
     return check(recomputed(design, points, read_formula(formula)), points, progress)
 
 
-def recomputed(design: Design, target: FloatArray, formula: Formula) -> Design:
-    """Design with everything that follows from its joints computed anew, and not yet verified."""
-    length = design.tube.length_mm
-    ends = [*(joint.centre_mm for joint in design.joints[1:]), length]
-    joints = tuple(
-        replace(
-            joint,
-            F_mm=end - joint.centre_mm,
-            theta_formula_deg=float(
-                theta_deg(formula, joint.alpha_closed_deg, joint.openF_mm, design.pressure_bar)
-            ),
-            theta_fe_deg=None,
-            theta_response_deg=None,
-            stretch_fe=None,
-        )
-        for joint, end in zip(design.joints, ends, strict=True)
-    )
-    bends = [
-        Bend(j.centre_mm, j.openF_mm, float(np.radians(j.sense * j.theta_formula_deg)))
-        for j in joints
-    ]
-    radius, sign = 0.5 * design.tube.outer_diameter_mm, side_sign(design.source.side)
-    shape = deform(bends, length, radius, design.base_pose, sign)
-    return replace(
-        design,
-        tube=replace(design.tube, root_mm=joints[0].centre_mm),
-        gauze=replace(design.gauze, seam_deg=best_seam(joints).seam_deg),
-        formula=FormulaRef(formula.name, formula.sha256),
-        joints=joints,
-        fit=Fit(formula=misfit_to(shape, target), fe=None),
-        verified=False,
-        sensitivity=(),
-    )
-
-
 def derive_formula(
     plan: CampaignPlan,
     *,
-    base: str | None = None,
+    base: str | Base | None = None,
     workers: int = 1,
     scheduler: str | None = None,
     runs: Path | None = None,
@@ -203,7 +170,7 @@ def derive_formula(
     ----------
     plan : CampaignPlan
         The tube (mm), the rubber, and the axes of the campaign (deg, mm, bar).
-    base : str, optional
+    base : str or Base, optional
         A formula file, or "fe", whose campaign is carried over by similarity.
     workers : int
         Processes, one thread each.
@@ -224,7 +191,7 @@ def derive_formula(
     UsageError, UnreadableInput, NotVerified
     """
     check_plan(plan)
-    known = None if base is None else load_base(base)
+    known = load_base(base) if isinstance(base, str) else base
     store = Store(runs or default_folder(), JOINT_RUN)
     return derive(
         plan,

@@ -1,44 +1,189 @@
-"""The files of a design: what the pipeline's result looks like on disk."""
+"""Files of results, by registries: `DESIGN_FILES`, `FE_FILES` and `TEMPLATE_FILES`.
+
+A row gives a file's name and the function that writes it: one function and one row add a file.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
-from fem.export.vtu import write_pvd, write_vtu
 from profiletool.errors import Unsure
 from profiletool.files.design_json import to_json
 from profiletool.pipeline import Result
 from profiletool.profile.shape_csv import shape_csv
 from profiletool.records.design import Design
-from profiletool.records.fe import Verification
 from profiletool.records.options import in_flags
-from profiletool.records.units import BAR_PER_MPA, FloatArray
+from profiletool.records.units import FloatArray
 from profiletool.report.candidates import draw_candidates
 from profiletool.report.dossier import dossier_of, formula_marks
 from profiletool.report.error import error_figure
-from profiletool.report.fe import theta_csv
+from profiletool.report.fe_files import FE_FILES, MESH_FILES, THETA_FILES, FeOutput
 from profiletool.report.figure import mask_png, png
 from profiletool.report.html import report_html
 from profiletool.report.overlay import draw_overlay
-from profiletool.report.plots import Mark, theta_figure, trajectories_figure
+from profiletool.report.plots import Mark
+from profiletool.report.registry import Writers, rows_of, written
 from profiletool.report.scene import Scene, scene_of
 from profiletool.report.tradeoff import trade_off_csv, trade_off_figure
 from profiletool.template.dxf import Version, write_dxf
 from profiletool.template.kinds import PLAIN, Wish
-from profiletool.template.layout import build_sheet
-from profiletool.template.mounting import mounting_drawing
+from profiletool.template.layout import Sheet, build_sheet
+from profiletool.template.mounting import Mounting, mounting_drawing
 from profiletool.template.pdf import Paper, write_pdf
 from profiletool.template.svg import write_svg
 from profiletool.verify.run import Run
 
 
-def files_of(
-    result: Result,
-    wish: Wish = PLAIN,
-    paper: Paper = "a4",
-) -> dict[str, bytes]:
-    """Make every file of the output folder: name to content.
+@dataclass(frozen=True)
+class TemplateOutput:
+    """All that the files of a template are written from.
+
+    Attributes
+    ----------
+    design : Design
+    wish : Wish
+        What the template shall be.
+    paper : {"a4", "letter"}
+        Of the PDF.
+    version : {"R2000", "R12"}
+        Of the DXF.
+    """
+
+    design: Design
+    wish: Wish = PLAIN
+    paper: Paper = "a4"
+    version: Version = "R2000"
+
+    @cached_property
+    def sheet(self) -> Sheet:
+        """The sheet that all formats show."""
+        return build_sheet(self.design, self.wish)
+
+    @cached_property
+    def svg(self) -> str:
+        """The sheet as SVG."""
+        return write_svg(self.sheet.drawing)
+
+
+@dataclass(frozen=True)
+class DesignOutput:
+    """All that the files of a design are written from.
+
+    Attributes
+    ----------
+    result : Result
+    wish : Wish
+        What the template shall be.
+    paper : {"a4", "letter"}
+        Of the PDFs.
+    """
+
+    result: Result
+    wish: Wish = PLAIN
+    paper: Paper = "a4"
+
+    @cached_property
+    def scene(self) -> Scene:
+        """What the overlay and the report draw."""
+        return scene_of(self.result)
+
+    @cached_property
+    def template(self) -> TemplateOutput:
+        """The cut template."""
+        return TemplateOutput(self.result.design, self.wish, self.paper)
+
+    @cached_property
+    def mounting(self) -> Mounting:
+        """The tube clamped beside its object, and the palm that is drilled for it."""
+        scene = self.scene
+        bent = scene.bent if scene.fe is None else scene.fe
+        profile = self.result.subject.profile
+        return mounting_drawing(self.result.design, profile, scene.straight, bent)
+
+    @cached_property
+    def fe(self) -> FeOutput | None:
+        """The finite-element run; None where there is not even a part of it."""
+        check, design = self.result.check, self.result.design
+        if check is None or check.run is None:
+            return None
+        return FeOutput(check.run, design.source.file, formula_marks(design))
+
+    @cached_property
+    def verified(self) -> FeOutput | None:
+        """The finite-element run; None where it did not get to the operating pressure."""
+        check = self.result.check
+        return None if check is None or check.shape is None else self.fe
+
+
+def _template_pdf(output: TemplateOutput) -> bytes:
+    sheet = output.sheet
+    return write_pdf(sheet.drawing, output.paper, sheet.parts)
+
+
+def _design_shapes(output: DesignOutput) -> bytes:
+    result = output.result
+    lines = {"target": result.subject.profile.points, "formula": result.shape.facing}
+    if result.plan.by != "formula":
+        lines["response"] = result.plan.bent.facing
+    if result.check is not None and result.check.shape is not None:
+        lines["fe"] = result.check.shape.facing
+    return shape_csv(lines)
+
+
+def _mounting_pdf(output: DesignOutput) -> bytes:
+    return write_pdf(output.mounting, output.paper, output.mounting.parts)
+
+
+def _error_png(output: DesignOutput) -> bytes:
+    result = output.result
+    return png(error_figure(output.scene, result.shape, result.design.source.file))
+
+
+def _trade_off_csv(output: DesignOutput) -> bytes | None:
+    trade_off = output.result.plan.trade_off
+    return None if trade_off is None else trade_off_csv(trade_off)
+
+
+def _trade_off_png(output: DesignOutput) -> bytes | None:
+    trade_off = output.result.plan.trade_off
+    return None if trade_off is None else png(trade_off_figure(trade_off, output.result.design))
+
+
+def _mask(output: DesignOutput) -> bytes | None:
+    silhouette = output.result.subject.silhouette
+    return None if silhouette is None else mask_png(silhouette.mask)
+
+
+def _report(output: DesignOutput) -> bytes:
+    return report_html(dossier_of(output.result, output.scene, output.template.svg))
+
+
+TEMPLATE_FILES: Writers[TemplateOutput] = {
+    "template.dxf": lambda output: write_dxf(output.sheet.drawing, output.version),
+    "template.svg": lambda output: output.svg.encode(),
+    "template.pdf": _template_pdf,
+}
+DESIGN_FILES: Writers[DesignOutput] = {
+    "design.json": lambda output: to_json(output.result.design).encode(),
+    **rows_of(lambda output: output.template, TEMPLATE_FILES),
+    "shape.csv": _design_shapes,
+    "mounting.dxf": lambda output: write_dxf(output.mounting),
+    "mounting.pdf": _mounting_pdf,
+    "overlay.png": lambda output: draw_overlay(output.scene),
+    "error_along_arc.png": _error_png,
+    "trade_off.csv": _trade_off_csv,
+    "trade_off.png": _trade_off_png,
+    "mask.png": _mask,
+    **rows_of(lambda output: output.fe, THETA_FILES),
+    **rows_of(lambda output: output.verified, MESH_FILES),
+    "report.html": _report,
+}
+
+
+def files_of(result: Result, wish: Wish = PLAIN, paper: Paper = "a4") -> dict[str, bytes]:
+    """Make every file of the output folder.
 
     Parameters
     ----------
@@ -47,35 +192,38 @@ def files_of(
         What the template shall be.
     paper : {"a4", "letter"}
         Of the PDFs.
+
+    Returns
+    -------
+    dict of str to bytes
+        Name to content.
     """
-    result = _in_flags(result)
-    design, checked = result.design, result.check
-    lines = {"target": result.subject.profile.points, "formula": result.shape.facing}
-    if result.plan.by != "formula":
-        lines["response"] = result.plan.bent.facing
-    if checked is not None and checked.shape is not None:
-        lines["fe"] = checked.shape.facing
-    scene = scene_of(result)
-    files = {
-        "design.json": to_json(design).encode(),
-        **template_files(design, wish, paper),
-        "shape.csv": shape_csv(lines),
-        **mounting_files(result, scene, paper),
-        "overlay.png": draw_overlay(scene),
-        "error_along_arc.png": png(error_figure(scene, result.shape, design.source.file)),
-    }
-    if result.plan.trade_off is not None:
-        files["trade_off.csv"] = trade_off_csv(result.plan.trade_off)
-        files["trade_off.png"] = png(trade_off_figure(result.plan.trade_off, design))
-    if result.subject.silhouette is not None:
-        files["mask.png"] = mask_png(result.subject.silhouette.mask)
-    if checked is not None and checked.run is not None:
-        found = checked.run.verification
-        files |= theta_files(found, design.source.file, formula_marks(design))
-        if checked.shape is not None:
-            files |= mesh_files(checked.run)
-    files["report.html"] = report_html(dossier_of(result, scene, files["template.svg"].decode()))
-    return files
+    return written(DESIGN_FILES, DesignOutput(_in_flags(result), wish, paper))
+
+
+def fe_files(
+    run: Run,
+    title: str,
+    told: str,
+    target: FloatArray | None = None,
+    marks: Sequence[Mark] = (),
+    *,
+    trajectories: bool = False,
+) -> dict[str, bytes]:
+    """Make the files of a finite-element run: name to content; see `FeOutput`."""
+    return written(FE_FILES, FeOutput(run, title, marks, told, target, trajectories))
+
+
+def template_files(
+    design: Design, wish: Wish = PLAIN, paper: Paper = "a4", version: Version = "R2000"
+) -> dict[str, bytes]:
+    """Draw a template of a design for cutters, plotters and printers: name to content."""
+    return written(TEMPLATE_FILES, TemplateOutput(design, wish, paper, version))
+
+
+def candidates_png(unsure: Unsure) -> bytes:
+    """Draw what the object could be, for a user who is asked to say."""
+    return draw_candidates(unsure.rgb, unsure.candidates)
 
 
 def _in_flags(result: Result) -> Result:
@@ -87,87 +235,3 @@ def _in_flags(result: Result) -> Result:
         reasons=tuple(in_flags(text) for text in result.reasons),
         misses=tuple(replace(miss, reason=in_flags(miss.reason)) for miss in result.misses),
     )
-
-
-def candidates_png(unsure: Unsure) -> bytes:
-    """Draw what the object could be, for a user who is asked to say."""
-    return draw_candidates(unsure.rgb, unsure.candidates)
-
-
-def fe_files(
-    run: Run, title: str, told: str, target: FloatArray | None = None, marks: Sequence[Mark] = ()
-) -> dict[str, bytes]:
-    """Make the files of a finite-element run: name to content.
-
-    Parameters
-    ----------
-    run : Run
-    title : str
-        For the pictures.
-    told : str
-        The run as JSON, as it is printed.
-    target : (N, 2) mm, optional
-        Profile that the tube shall follow.
-    marks : sequence of Mark
-        Angles to compare with.
-    """
-    found = run.verification
-    lines = {} if target is None else {"target": target}
-    lines |= {"rest": found.rest.shape.facing, "fe": found.last.shape.facing}
-    return {
-        "fe.json": told.encode(),
-        **theta_files(found, title, marks),
-        "shape.csv": shape_csv(lines),
-        **mesh_files(run),
-    }
-
-
-def mesh_files(run: Run) -> dict[str, bytes]:
-    """Write the deformed mesh for ParaView: at the highest pressure, and as a series."""
-    solution = run.solution
-    names = [f"actuator_{k:02d}.vtu" for k in range(len(solution.states))]
-    pressures_bar = [BAR_PER_MPA * state.pressure for state in solution.states]
-    meshes = [write_vtu(solution.mesh, state.x) for state in solution.states]
-    return {
-        "actuator.vtu": meshes[-1],
-        "actuator.pvd": write_pvd(list(zip(pressures_bar, names, strict=True))),
-        **dict(zip(names, meshes, strict=True)),
-    }
-
-
-def theta_files(found: Verification, title: str, marks: Sequence[Mark] = ()) -> dict[str, bytes]:
-    """Tabulate and draw angles against pressure."""
-    return {
-        "theta_vs_pressure.csv": theta_csv(found),
-        "theta_vs_pressure.png": png(theta_figure(found, title, marks)),
-    }
-
-
-def trajectory_files(found: Verification, title: str) -> dict[str, bytes]:
-    """Draw the ways of the phalanges."""
-    return {"trajectories.png": png(trajectories_figure(found, title))}
-
-
-def template_files(
-    design: Design,
-    wish: Wish = PLAIN,
-    paper: Paper = "a4",
-    version: Version = "R2000",
-) -> dict[str, bytes]:
-    """Draw a template of a design for cutters, plotters and printers."""
-    sheet = build_sheet(design, wish)
-    return {
-        "template.dxf": write_dxf(sheet.drawing, version),
-        "template.svg": write_svg(sheet.drawing).encode(),
-        "template.pdf": write_pdf(sheet.drawing, paper, sheet.parts),
-    }
-
-
-def mounting_files(result: Result, scene: Scene, paper: Paper = "a4") -> dict[str, bytes]:
-    """Draw how the tube is clamped beside its object, and the palm that is drilled for it."""
-    bent = scene.bent if scene.fe is None else scene.fe
-    drawing = mounting_drawing(result.design, result.subject.profile, scene.straight, bent)
-    return {
-        "mounting.dxf": write_dxf(drawing),
-        "mounting.pdf": write_pdf(drawing, paper, drawing.parts),
-    }

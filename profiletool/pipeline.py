@@ -1,4 +1,4 @@
-"""The one place that knows the order of the stages, from a picture to a design."""
+"""The order of the stages, from a picture to a design and its verdict."""
 
 from __future__ import annotations
 
@@ -6,29 +6,22 @@ import html
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from formula.theta import Formula
-from profiletool.bending.kinematics import deform
 from profiletool.files.formula import read_formula
-from profiletool.joints.misfit import misfit
 from profiletool.joints.optimal_method import optimal_plan
 from profiletool.joints.paper_method import paper_plan
-from profiletool.joints.plan import Plan
-from profiletool.joints.windows import best_seam
-from profiletool.records.design import Design, Fit, FormulaRef, Gauze, Source, Tube
-from profiletool.records.frames import Shape
+from profiletool.records.design import Design
 from profiletool.records.making import check_request
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request
-from profiletool.subject.find import Subject, digest_of, find_subject
-from profiletool.verdict.attempt import Attempt
+from profiletool.subject.find import Subject, find_subject
+from profiletool.verdict.attempt import Attempt, attempt_of
 from profiletool.verdict.missed import Missed
 from profiletool.verdict.notes import notes_of
 from profiletool.verdict.reasons import misses_of, reasons_of
 from profiletool.verdict.summary import headline, summary
-from profiletool.verify.bench import FeBench
 from profiletool.verify.check import Check, check
+from profiletool.verify.forward import FeForwardModel
 from profiletool.verify.run import Progress
 from profiletool.verify.sensitivity import sensitivity_of
 
@@ -36,21 +29,18 @@ _STABLE_SHARE = 0.97  # of the pressure at which FE loses its stability
 
 
 @dataclass(frozen=True, repr=False)
-class Result:
-    """A design with what it was made from, and what was asked for.
+class Result(Attempt):
+    """A design with its verdict, and everything that it was made from; see `Attempt`.
 
-    ``reasons`` say why it is infeasible; none where it is feasible. ``shape`` is the tube as the
-    formula bends it. ``check`` is its finite-element run; None where none was asked for.
-    ``misses`` are the stretches of the profile that the shape is far off.
+    Attributes
+    ----------
+    reasons : tuple of str
+        Why the design is infeasible; none where it is feasible.
+    misses : tuple of Missed
+        Stretches of the profile that the best known shape is far off.
     """
 
-    request: Request
-    design: Design
     reasons: tuple[str, ...]
-    subject: Subject
-    plan: Plan
-    shape: Shape
-    check: Check | None
     misses: tuple[Missed, ...]
 
     def __str__(self) -> str:
@@ -77,6 +67,11 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
     progress : callable, optional
         Takes the share of the finite-element run that is done, 0 to 1.
 
+    Returns
+    -------
+    Result
+        Also where the design is infeasible or not verified, which it says.
+
     Raises
     ------
     ProfiletoolError
@@ -91,17 +86,7 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
         say(f"once more below {lower.tube.max_pressure_bar:.2f} bar, where FE is stable")
         second = _attempt(lower, subject, formula, say, progress)
         attempt = second if second.design.verified else attempt
-    attempt = replace(attempt, request=request)
-    misses = misses_of(attempt)
-    reasons = reasons_of(attempt, misses)
-    design = replace(
-        attempt.design, feasible=not reasons, warnings=notes_of(attempt, reasons, misses)
-    )
-    checked = attempt.check
-    if checked is not None and checked.run is not None and checked.shape is not None:
-        sensitivity = sensitivity_of(design, checked.run, subject.profile)
-        design = replace(design, sensitivity=sensitivity)
-    return Result(request, design, reasons, subject, attempt.plan, attempt.shape, checked, misses)
+    return _judged(replace(attempt, request=request))
 
 
 def _attempt(
@@ -113,17 +98,14 @@ def _attempt(
 ) -> Attempt:
     profile, material = subject.profile, request.tube
     if request.method == "optimal":
-        bench = FeBench(material) if request.verify and request.refine else None
-        plan = optimal_plan(request, profile, formula, say, bench)
+        forward = FeForwardModel(material) if request.verify and request.refine else None
+        plan = optimal_plan(request, profile, formula, say, forward)
     else:
         plan = paper_plan(request, profile, formula, say)
-    layout = plan.layout
-    shape = deform(layout.bends(), layout.length_mm, material.radius_mm, layout.pose, profile.sign)
-    design = _design(request, subject, formula, plan, shape)
-    attempt = Attempt(request, subject, formula, plan, design, shape, None)
+    attempt = attempt_of(request, subject, formula, plan)
     if not request.verify:
         return attempt
-    checked = _verified(design, profile, say, progress)
+    checked = _verified(attempt.design, profile, say, progress)
     return replace(attempt, design=checked.design, check=checked)
 
 
@@ -138,49 +120,6 @@ def _lower(attempt: Attempt) -> Request | None:
     return replace(request, tube=replace(request.tube, max_pressure_bar=bar))
 
 
-def _design(
-    request: Request, subject: Subject, formula: Formula, plan: Plan, shape: Shape
-) -> Design:
-    """Gather the design; what the user should know of it comes later."""
-    material, profile, layout = request.tube, subject.profile, plan.layout
-    response = None if plan.by == "formula" else misfit(plan.bent, profile)
-    seam = best_seam(layout.joints).seam_deg
-    gauze = Gauze(material.pitch_mm, material.thread_mm, material.turns, seam)
-    return Design(
-        source=Source(
-            file=request.file.name,
-            sha256=digest_of(request),
-            mm_per_px=subject.scale.mm_per_px if subject.picture is not None else None,
-            scale_source=subject.scale.source,
-            side=request.side,
-            profile_length_mm=profile.length_mm,
-            bridged_share=float(np.mean(profile.bridged)),
-            origin_px=subject.origin_px,
-            rotated_deg=subject.rotated_deg,
-            symmetric=request.look.symmetric,
-            scale_error_share=subject.scale.measured_error,
-            confidence=None if subject.silhouette is None else subject.silhouette.confidence,
-        ),
-        tube=Tube(
-            material.outer_diameter_mm,
-            material.wall_mm,
-            layout.root_mm,
-            layout.length_mm,
-            material.rubber,
-        ),
-        gauze=gauze,
-        formula=FormulaRef(formula.name, formula.sha256),
-        pressure_bar=layout.pressure_bar,
-        joints=layout.joints,
-        base_pose=layout.pose,
-        fit=Fit(formula=misfit(shape, profile), fe=None, response=response),
-        feasible=True,  # until the verdict
-        verified=False,
-        warnings=(),
-        method=request.method,
-    )
-
-
 def _verified(
     design: Design, profile: Profile, say: Callable[[str], None], progress: Progress | None
 ) -> Check:
@@ -190,3 +129,16 @@ def _verified(
 
     say(f"finite elements: the whole actuator to {design.pressure_bar:.2f} bar")
     return check(design, profile.points, share)
+
+
+def _judged(attempt: Attempt) -> Result:
+    """Add the verdict: reasons against the design, notes for its user, sensitivities."""
+    misses = misses_of(attempt)
+    reasons = reasons_of(attempt, misses)
+    notes = notes_of(attempt, reasons, misses)
+    design = replace(attempt.design, feasible=not reasons, warnings=notes)
+    checked = attempt.check
+    if checked is not None and checked.run is not None and checked.shape is not None:
+        sensitivity = sensitivity_of(design, checked.run, attempt.profile)
+        design = replace(design, sensitivity=sensitivity)
+    return Result(**vars(replace(attempt, design=design)), reasons=reasons, misses=misses)

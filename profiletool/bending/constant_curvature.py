@@ -1,4 +1,4 @@
-"""The actuator by formula (9) and joints of constant curvature, independent of each other."""
+"""The bending model by formula (9): joints of constant curvature, independent of each other."""
 
 from __future__ import annotations
 

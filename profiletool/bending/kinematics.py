@@ -15,7 +15,7 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike
 
-from profiletool.records.frames import Pose, Shape
+from profiletool.records.frames import Pose, Shape, direction, outward
 from profiletool.records.units import FloatArray
 
 PIVOT_SHARE = 0.79  # of the tube's radius, from its axis toward the uncut sector
@@ -36,7 +36,17 @@ class Bend:
 
 
 def facing_stretch(turn_rad: ArrayLike, radius_mm: float) -> FloatArray:
-    """Return by how much the object-facing line lengthens in a joint (shortens where negative)."""
+    """Lengthening of the object-facing line in a joint, mm; it shortens where negative.
+
+    Lengths are kept on the axis of rotation, at `PIVOT_SHARE` of the radius.
+
+    Parameters
+    ----------
+    turn_rad : (...)
+        Positive toward the object.
+    radius_mm : float
+        Of the tube.
+    """
     turn = np.asarray(turn_rad, dtype=float)
     stretch: FloatArray = PIVOT_SHARE * radius_mm * np.abs(turn) - radius_mm * turn
     return stretch
@@ -70,11 +80,11 @@ def deform(
     step = np.diff(turn)
     chord = np.diff(along) * speed * np.sinc(step / (2.0 * np.pi))
     middle = 0.5 * (heading[1:] + heading[:-1])
-    steps = chord[:, None] * np.column_stack([np.cos(middle), np.sin(middle)])
+    steps = chord[:, None] * direction(middle)
     start = np.array([[pose.x_mm, pose.y_mm]])
     facing = np.concatenate([start, start + np.cumsum(steps, axis=0)])
-    outward = sign * np.column_stack([np.sin(heading), -np.cos(heading)])
-    return Shape(along, facing, facing + radius_mm * outward, facing + 2.0 * radius_mm * outward)
+    across = outward(heading, sign)
+    return Shape(along, facing, facing + radius_mm * across, facing + 2.0 * radius_mm * across)
 
 
 def _sample(edges: FloatArray, rates: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -1,17 +1,27 @@
-"""What the choice of joints asks of a model of the actuator, whatever the model is.
+"""The chain of joints, and the protocol of models that bend it.
 
-Units: mm, rad, MPa. Angles of joints are magnitudes; ``sense`` gives the direction.
+Units: mm, rad, MPa. Angles of joints are magnitudes; ``sense`` gives the direction in the plane.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
+import numpy as np
 from numpy.typing import ArrayLike
 
+from profiletool.records.design import AWAY_DEG, TOWARD_DEG, sense_of
 from profiletool.records.frames import Pose, Shape
 from profiletool.records.units import FloatArray
+
+TOWARD, AWAY = float(np.radians(TOWARD_DEG)), float(np.radians(AWAY_DEG))
+
+
+def centers_of(sense: ArrayLike) -> FloatArray:
+    """Give alpha_center, (n,) rad, of joints of a sense, (n,): +1 toward the object, -1 away."""
+    return np.where(np.asarray(sense) > 0.0, TOWARD, AWAY)
 
 
 @dataclass(frozen=True)
@@ -24,8 +34,9 @@ class Chain:
         Of the cuts, on the straight tube.
     alpha : (n,) rad
         alpha_closed.
-    sense : (n,)
-        +1 where a joint bends toward the object, -1 away from it.
+    alpha_center : (n,) rad
+        Angular position of the uncut sectors' middles: `TOWARD` bends toward the object, `AWAY`
+        away from it, all others out of the plane.
     length : float, mm
         Of the tube.
     """
@@ -33,8 +44,20 @@ class Chain:
     centre: FloatArray
     openF: FloatArray
     alpha: FloatArray
-    sense: FloatArray
+    alpha_center: FloatArray
     length: float
+
+    @cached_property
+    def sense(self) -> FloatArray:
+        """+1 where a joint bends toward the object, -1 away from it: (n,).
+
+        Raises
+        ------
+        profiletool.errors.UnreadableInput
+            Naming the first joint that bends out of the plane.
+        """
+        centers = np.degrees(self.alpha_center).tolist()
+        return np.array([sense_of(center, k + 1) for k, center in enumerate(centers)])
 
 
 class Model(Protocol):
@@ -46,15 +69,15 @@ class Model(Protocol):
 
     @property
     def openF(self) -> tuple[float, float]:
-        """What cuts it holds for, mm."""
+        """Range of cuts that it holds for, mm."""
 
     @property
     def alpha(self) -> tuple[float, float]:
-        """What alpha_closed it holds for, rad."""
+        """Range of alpha_closed that it holds for, rad."""
 
     @property
     def pressure(self) -> tuple[float, float]:
-        """What pressures it holds for, MPa."""
+        """Range of pressures that it holds for, MPa."""
 
     def theta(self, openF: ArrayLike, alpha: ArrayLike, pressure: ArrayLike) -> FloatArray:
         """Angle of a joint alone, rad; arguments broadcast."""

@@ -1,4 +1,4 @@
-"""What a joint's neighbours, the clamped end and the closed end do to its bending and stretch.
+"""Influence of neighbours, of the clamped end and of the closed end on a joint's turn and stretch.
 
 A cut lets the sections at its two edges warp: the threads that it severs move apart further than
 those of the uncut sector. Wrapped sectors resist, by shear in the rubber; threads that are stiff
@@ -36,7 +36,7 @@ ODD = (False, True, False, True)  # whether a mode changes its sign with the sid
 PARAMETERS = 25  # of a mode; see `_mode`
 PLUG_MM = 1.0  # rigid at the closed end
 _FAR_MM = 1e3  # stands for no neighbour
-_LEAST_MM = 0.3  # gaps count no shorter
+_LEAST_MM = 0.3  # wrapped sectors count no shorter
 # Middle and half width of the ranges: alpha in rad, openF in mm, pressure in MPa.
 _ALPHA, _OPENF, _PRESSURE = (2.2, 0.95), (10.0, 6.0), (0.13, 0.09)
 _MOST = 3.0  # beyond it ``apart`` and ``along`` level off
@@ -49,8 +49,8 @@ class Batch:
 
     Attributes
     ----------
-    gap : (B, n + 1) mm
-        Wrapped lengths before, between and behind the cuts.
+    wrapped : (B, n + 1) mm
+        Lengths of the wrapped sectors before, between and behind the cuts.
     terms : (B, n, 5)
         1, alpha, openF, pressure, alpha squared; each from -1 to 1.
     sense : (B, n)
@@ -58,7 +58,7 @@ class Batch:
         False where a chain is filled up.
     """
 
-    gap: FloatArray
+    wrapped: FloatArray
     terms: FloatArray
     sense: FloatArray
     real: NDArray[np.bool_]
@@ -86,20 +86,20 @@ def batch(chains: Sequence[Chain], pressures: Sequence[float]) -> Batch:
     """Line chains up at their clamped ends."""
     most = max(len(chain.centre) for chain in chains)
     shape = (len(chains), most)
-    gap, terms = np.full((len(chains), most + 1), _FAR_MM), np.zeros((*shape, 5))
+    wrapped, terms = np.full((len(chains), most + 1), _FAR_MM), np.zeros((*shape, 5))
     sense, real = np.ones(shape), np.zeros(shape, dtype=bool)
     for b, (chain, pressure) in enumerate(zip(chains, pressures, strict=True)):
         n = len(chain.centre)
         half = 0.5 * chain.openF
-        gap[b, 0] = chain.centre[0] - half[0]
-        gap[b, 1:n] = np.diff(chain.centre) - half[1:] - half[:-1]
-        gap[b, n] = chain.length - PLUG_MM - chain.centre[-1] - half[-1]
+        wrapped[b, 0] = chain.centre[0] - half[0]
+        wrapped[b, 1:n] = np.diff(chain.centre) - half[1:] - half[:-1]
+        wrapped[b, n] = chain.length - PLUG_MM - chain.centre[-1] - half[-1]
         alpha = (chain.alpha - _ALPHA[0]) / _ALPHA[1]
         terms[b, :, 0], terms[b, :n, 1], terms[b, :n, 4] = 1.0, alpha, alpha**2
         terms[b, :n, 2] = (chain.openF - _OPENF[0]) / _OPENF[1]
         terms[b, :, 3] = (pressure - _PRESSURE[0]) / _PRESSURE[1]
         sense[b, :n], real[b, :n] = chain.sense, True
-    return Batch(gap, terms, sense, real)
+    return Batch(wrapped, terms, sense, real)
 
 
 def log_factors(modes: FloatArray, chains: Batch) -> FloatArray:
@@ -118,7 +118,7 @@ def log_factors(modes: FloatArray, chains: Batch) -> FloatArray:
     stiff = _exp(_of_terms(terms, modes[:, 4:9]))
     # In proportion to openF, of which the third term is (openF - 10) / 6.
     shear = shear * (1.0 + 0.6 * terms[..., 2])
-    over_lag = np.maximum(chains.gap, _LEAST_MM) / lag
+    over_lag = np.maximum(chains.wrapped, _LEAST_MM) / lag
     hold, join = 1.0 / np.tanh(over_lag), 1.0 / np.sinh(np.minimum(over_lag, 50.0))
     left = np.arange(0, 2 * n, 2)
     right = left + 1

@@ -17,8 +17,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from profiletool.bending.model import Chain
 from profiletool.bending.neighbours import PLUG_MM
-from profiletool.bending.response_table import Table, shipped
-from profiletool.records.frames import Pose, Shape
+from profiletool.bending.response_table import ResponseTable, shipped
+from profiletool.records.frames import Pose, Shape, base_axes
 from profiletool.records.units import FloatArray
 
 Values = TypeVar("Values", FloatArray, NDArray[np.complex128])
@@ -36,12 +36,12 @@ class Response:
 
     Attributes
     ----------
-    table : Table
+    table : ResponseTable
     length_scale, pressure_scale : float
         Of this tube over the tabulated one.
     """
 
-    table: Table
+    table: ResponseTable
     length_scale: float = 1.0
     pressure_scale: float = 1.0
 
@@ -160,7 +160,7 @@ class Response:
         return np.column_stack([self.length_scale * facing, -turn])
 
     def factors(self, chain: Chain, pressure: float) -> FloatArray:
-        """Tell what neighbours and ends make of every joint's turn and stretch: (n, 2)."""
+        """Factors on every joint's turn and stretch by its neighbours and the ends: (n, 2)."""
         own = self._own_chain(chain)
         return np.exp(self.table.neighbours.log_factors(own, pressure / self.pressure_scale))
 
@@ -184,12 +184,7 @@ class Response:
         half = 0.5 * (table.diameter + growth)[:, None] * across
         centre[:, 1] += 0.5 * table.diameter
         heading = np.radians(pose.heading_deg)
-        axes = np.array(
-            [
-                [np.cos(heading), np.sin(heading)],
-                [sign * np.sin(heading), -sign * np.cos(heading)],
-            ]
-        )
+        axes = np.array(base_axes(heading, sign))
         start = np.array([pose.x_mm, pose.y_mm])
         facing, axis, far = (
             start + self.length_scale * (line @ axes)

@@ -1,4 +1,4 @@
-"""Tabulated fields of single joints and what neighbours do to them: the response's data.
+"""The data of the joint response: tabulated fields of single joints, and neighbours' influence.
 
 All numbers are those of one tube, the *tabulated* one; `profiletool.bending.response` carries them
 over to others.
@@ -69,8 +69,8 @@ class Axis:
 
 
 @dataclass(frozen=True)
-class Table:
-    """What finite elements say of single joints in a long tube.
+class ResponseTable:
+    """Single joints in a long tube, by finite elements.
 
     Attributes
     ----------
@@ -109,7 +109,7 @@ class Table:
     about: dict[str, Any]
 
     def places(self, openF: FloatArray) -> FloatArray:
-        """Where halves of n joints are tabulated, from their middles: (n, M) mm."""
+        """Places at which halves of n joints are tabulated, from their middles: (n, M) mm."""
         half = 0.5 * openF[:, None]
         return np.concatenate([half * self.inside, half + self.outside], axis=1)
 
@@ -157,7 +157,7 @@ class Table:
         )
 
     @classmethod
-    def read(cls, file: IO[bytes]) -> Table:
+    def read(cls, file: IO[bytes]) -> ResponseTable:
         """Read what `save` wrote."""
         with np.load(file, allow_pickle=False) as kept:
             values = {name: kept[name] for name in kept.files}
@@ -182,7 +182,7 @@ class Table:
 
 
 @cache
-def shipped() -> Table:
+def shipped() -> ResponseTable:
     """Read the table that comes with the package, once."""
     with resources.files("profiletool.bending").joinpath(FILE).open("rb") as file:
-        return Table.read(file)
+        return ResponseTable.read(file)

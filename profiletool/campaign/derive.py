@@ -1,4 +1,4 @@
-"""From a campaign of one-joint runs to a formula file."""
+"""The derivation of a formula from a campaign of one-joint runs."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _PULLED = np.array([1.25, 2.0, 3.0])  # stretches at which kinds of rubber are c
 
 @dataclass(frozen=True)
 class CampaignPlan:
-    """What a formula is wanted for.
+    """The tube, the rubber and the axes of a campaign.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class CampaignPlan:
     model: Model = "converged"
 
     def task(self, i: int, j: int) -> Task:
-        """Give the run of the i-th alpha and the j-th openF."""
+        """Make the task of the i-th alpha and the j-th openF."""
         return Task(
             openF_mm=self.openF_mm[j],
             alpha_deg=self.alpha_deg[i],
@@ -108,7 +108,12 @@ class Derivation:
 
 
 def load_base(name: str) -> Base:
-    """Read the campaign in a formula file, or in a formula that comes along.
+    """Read the campaign in a formula file.
+
+    Parameters
+    ----------
+    name : str
+        Path of the file, or the name of a formula that comes along.
 
     Raises
     ------
@@ -128,7 +133,19 @@ def load_base(name: str) -> Base:
 
 
 def derive(plan: CampaignPlan, run_all: RunAll, base: Base | None = None) -> Derivation:
-    """Run what has to be run, and fit.
+    """Run a campaign and fit a formula to it.
+
+    Parameters
+    ----------
+    plan : CampaignPlan
+    run_all : callable
+        Tasks to their outcomes, in order.
+    base : Base, optional
+        A known campaign that is carried over by similarity and corrected by few runs.
+
+    Returns
+    -------
+    Derivation
 
     Raises
     ------
@@ -168,7 +185,7 @@ def derive(plan: CampaignPlan, run_all: RunAll, base: Base | None = None) -> Der
 
 
 def formula_of(plan: CampaignPlan, terms: Terms) -> Formula:
-    """Make a formula of terms, with the range that the campaign covers."""
+    """Make a formula of terms, valid for the plan's tube and the range that it covers."""
     return Formula(
         "", "", "", terms, plan.diameter_mm, plan.wall_mm,
         (plan.alpha_deg[0], plan.alpha_deg[-1]),
@@ -217,7 +234,7 @@ def _guess(plan: CampaignPlan, base: Base, axes: Sequence[FloatArray]) -> FloatA
 
 
 def similar(plan: CampaignPlan, base: Base) -> bool:
-    """Whether the tube and the kind of rubber are those of a known campaign but for scale."""
+    """Whether tube and rubber are those of a known campaign but for scale, within 2 %."""
 
     def numbers(diameter: float, wall: float, law: Law) -> tuple[float, ...]:
         # Mooney's plot, stress / (lam - lam^-2) over the stiffness, tells laws apart.

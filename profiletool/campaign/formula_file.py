@@ -1,4 +1,4 @@
-"""A derivation as a formula file."""
+"""The formula file of a derivation."""
 
 from __future__ import annotations
 
@@ -13,7 +13,19 @@ from profiletool.records.units import FloatArray
 
 
 def formula_file(found: Derivation, name: str) -> bytes:
-    """Write a derivation as a formula file; the same derivation gives the same bytes."""
+    """Write a derivation as a formula file; the same derivation gives the same bytes.
+
+    Parameters
+    ----------
+    found : Derivation
+    name : str
+        Of the formula.
+
+    Returns
+    -------
+    bytes
+        JSON that `formula.files.parse_formula` reads, the campaign in it.
+    """
     plan, law = found.plan, found.plan.rubber.law
     tree = {
         "schema": POLYNOMIAL,

@@ -1,4 +1,4 @@
-"""Keys and files of runs: hashes over the task and the model's source files, sealed JSON."""
+"""Keys and files of runs: hashes of a task and the model's sources, and sealed JSON."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Kinds of runs: all that the campaign engine needs to know of a task and its outcome."""
+"""The kind of a run: all that the campaign engine needs to know of tasks and outcomes."""
 
 from __future__ import annotations
 

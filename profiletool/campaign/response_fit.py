@@ -1,4 +1,4 @@
-"""From lines of finite-element runs to the joint response's table.
+"""The fit of the joint response's table to lines of finite-element runs.
 
 Glossary
 --------
@@ -25,7 +25,7 @@ from profiletool.bending.neighbours import (
     log_factors,
 )
 from profiletool.bending.response import Response
-from profiletool.bending.response_table import Axis, Table
+from profiletool.bending.response_table import Axis, ResponseTable
 from profiletool.records.frames import Pose, Shape
 from profiletool.records.units import FloatArray
 
@@ -79,7 +79,7 @@ class Error:
     worst: FloatArray
 
     def summary(self) -> dict[str, float]:
-        """Say it in a few numbers."""
+        """Summarise all runs and states, mm per 100 mm of tube."""
         return {
             "rms_mm_per_100mm": round(float(np.sqrt(np.mean(self.rms**2))), 3),
             "median_mm_per_100mm": round(float(np.median(self.rms)), 3),
@@ -91,7 +91,13 @@ class Error:
 
 
 def fields(lines: Lines) -> FloatArray:
-    """Turn, stretch, shift and height of a run's states along the tube: (S, 4, N)."""
+    """Compute turn, stretch, shift and height of a run's states along the tube.
+
+    Returns
+    -------
+    (S, 4, N)
+        rad, then mm; see `profiletool.bending.response_table`.
+    """
     across = lines.far - lines.facing
     turn = 0.5 * np.pi - np.unwrap(np.arctan2(across[..., 1], across[..., 0]), axis=-1)
     step = np.diff(turn, axis=-1)
@@ -105,7 +111,7 @@ def fields(lines: Lines) -> FloatArray:
     return np.stack([turn, *summed, np.hypot(across[..., 0], across[..., 1])], axis=1)
 
 
-def tabulate(singles: Sequence[Lines], straight: Lines, tube: FloatArray) -> Table:
+def tabulate(singles: Sequence[Lines], straight: Lines, tube: FloatArray) -> ResponseTable:
     """Build a table without neighbours' influence.
 
     Parameters
@@ -132,7 +138,7 @@ def tabulate(singles: Sequence[Lines], straight: Lines, tube: FloatArray) -> Tab
             halves[i, j] = _half(grid[a, o], wrapped, tube[0])
     theta = 2.0 * halves[:, :, :, 0, -1]
     coarse = slice(len(pressure) % 2 == 0, None, 2)
-    return Table(
+    return ResponseTable(
         alpha=Axis.through(alpha),
         openF=Axis.through(openF),
         pressure=Axis.through(pressure),
@@ -183,7 +189,13 @@ def _half(single: Lines, wrapped: FloatArray, diameter: float) -> FloatArray:
 
 
 def factors_in(lines: Lines, response: Response) -> FloatArray:
-    """Factors on turn and stretch that fit a run's lines best: (S, n, 2)."""
+    """Fit factors on the response's turn and stretch of every joint to a run's lines.
+
+    Returns
+    -------
+    (S, n, 2)
+        Least squares over both lines, state by state.
+    """
     n = len(lines.chain.centre)
     found = np.ones((len(lines.pressure), n, 2))
     for state, pressure in enumerate(lines.pressure):
@@ -214,6 +226,14 @@ def fit_neighbours(
     """Fit the neighbours' influence to the factors found in runs.
 
     Errors count by what they do to the object-facing line, to first order.
+
+    Parameters
+    ----------
+    runs : sequence of Lines
+    factors : sequence of (S, n, 2)
+        What `factors_in` finds in each run.
+    response : Response
+        Without neighbours' influence.
     """
     states = [
         (lines.chain, float(pressure), both)
@@ -259,7 +279,14 @@ def _sensitivity(
 
 
 def check(runs: Sequence[Lines], response: Response) -> Error:
-    """Compare predicted object-facing lines with those of runs not used in the fit."""
+    """Compare predicted object-facing lines with those of runs not used in the fit.
+
+    Parameters
+    ----------
+    runs : sequence of Lines
+    response : Response
+        Predicts from each run's chain and pressures alone.
+    """
     rms, worst = [], []
     for lines in runs:
         hundred = lines.chain.length / 100.0
@@ -272,6 +299,6 @@ def check(runs: Sequence[Lines], response: Response) -> Error:
     return Error(np.array(rms), np.array(worst))
 
 
-def with_about(table: Table, about: dict[str, Any]) -> Table:
-    """Write down where a table comes from."""
+def with_about(table: ResponseTable, about: dict[str, Any]) -> ResponseTable:
+    """Add entries to what a table tells of its origin."""
     return replace(table, about={**table.about, **about})

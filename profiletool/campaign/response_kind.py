@@ -1,4 +1,4 @@
-"""A run for the joint response: an actuator to its lines, the key they are kept under, the file."""
+"""Runs for the joint response: from an actuator to its lines, with keys and files."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fem.actuator import AWAY, TOWARD, Actuator, Window
+from fem.actuator import Actuator, Window
 from fem.errors import NotConverged
 from profiletool.bending.model import Chain
 from profiletool.campaign.keys import key_of, seal, unseal
@@ -14,18 +14,21 @@ from profiletool.campaign.kind import RunKind
 from profiletool.campaign.response_fit import BASE, SIGN, Lines
 from profiletool.campaign.response_tasks import PLUG_MM, ResponseTask
 from profiletool.records.units import BAR_PER_MPA
-from profiletool.verify.run import inflate
+from profiletool.verify.run import inflate, reason
 
 SCHEMA = "profiletool.response_run/1"  # to be raised where `run` reads other numbers off a solution
-_CHAIN, _LINES = ("centre", "openF", "alpha", "sense"), ("pressure", "along", "facing", "far")
+_CHAIN, _LINES = (
+    ("centre", "openF", "alpha", "alpha_center"),
+    ("pressure", "along", "facing", "far"),
+)
 
 
 def run(task: ResponseTask) -> Lines:
     """Run finite elements, as far as they go; without states where they do not even begin."""
     chain = task.chain
     windows = tuple(
-        Window(float(c), float(o), float(a), float(TOWARD if s > 0.0 else AWAY))
-        for c, o, a, s in zip(chain.centre, chain.openF, chain.alpha, chain.sense, strict=True)
+        Window(*(float(number) for number in joint))
+        for joint in zip(chain.centre, chain.openF, chain.alpha, chain.alpha_center, strict=True)
     )
     actuator = Actuator(chain.length, windows, plug=PLUG_MM)
     pressures, ended = task.pressures_bar, None
@@ -39,8 +42,7 @@ def run(task: ResponseTask) -> Lines:
             pressures = reached if len(reached) < len(pressures) else pressures[:-1]
             if not pressures:
                 return _no_lines(task, ended)
-    if found.critical is not None:
-        ended = f"{found.critical.kind} at {found.critical.pressure_bar:.2f} bar"
+    ended = reason(found) or ended
     shapes = [state.shape for state in found.states]
     if not shapes:
         return _no_lines(task, ended)
@@ -105,8 +107,8 @@ def from_json(data: bytes) -> Lines:
             for name in ("facing", "far")
         )
         tree = body["chain"]
-        centre, openF, alpha, sense = (np.array(tree[name], dtype=float) for name in _CHAIN)
-        chain = Chain(centre, openF, alpha, sense, tree["length"])
+        joints = (np.array(tree[name], dtype=float) for name in _CHAIN)
+        chain = Chain(*joints, length=tree["length"])
         return Lines(body["name"], chain, pressure, along, facing, far, body["ended"])
     except (KeyError, TypeError, ValueError) as error:
         raise ValueError("this is no run of lines") from error

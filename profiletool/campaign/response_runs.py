@@ -45,7 +45,7 @@ TRAINED, TRAIN_SEED, CHECK_SEED = 150, 1, 2
 def run_group(
     tasks: Sequence[ResponseTask], store: Store[ResponseTask, Lines], workers: int
 ) -> list[Lines]:
-    """Run tasks that the store does not hold yet, and tell the progress.
+    """Run tasks that the store does not hold yet, and print the progress.
 
     Returns
     -------

@@ -8,7 +8,7 @@ from itertools import product
 
 import numpy as np
 
-from profiletool.bending.model import Chain
+from profiletool.bending.model import Chain, centers_of
 
 PRESSURES = tuple(round(0.2 * k, 1) for k in range(1, 12))  # bar, of single joints
 COARSE = (0.4, 0.8, 1.2, 1.6, 2.0)  # of several joints
@@ -47,7 +47,8 @@ def _task(
 ) -> ResponseTask:
     """Task of joints (centre mm, openF mm, alpha deg, sense)."""
     centre, openF, alpha, sense = np.array(joints, dtype=float).reshape(-1, 4).T
-    return ResponseTask(name, Chain(centre, openF, np.radians(alpha), sense, length), pressures_bar)
+    chain = Chain(centre, openF, np.radians(alpha), centers_of(sense), length)
+    return ResponseTask(name, chain, pressures_bar)
 
 
 def singles() -> list[ResponseTask]:

@@ -1,4 +1,4 @@
-"""A one-joint run: what is asked, the key it is kept under, and what came of it."""
+"""One-joint runs: tasks, keys, outcomes and the model behind them."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of a run; N pressures were reached.
+    """The outcome of a run; N pressures were reached.
 
     The joint's rigid motion is that of the point that lies on the tube's axis at the cut's
     centre at rest. The wrapped sector beyond the joint carries it along as if it reached there,
@@ -156,7 +156,7 @@ def key(task: Task) -> str:
 
 
 def run(task: Task) -> Outcome:
-    """Run a task on one thread, as far as it goes; what the model refuses is told, not raised."""
+    """Run a task on one thread, as far as it goes; what the model refuses ends up in `failure`."""
     settings, pressures, failure = _SETTINGS[task.model], task.pressures_bar, None
     try:
         actuator = actuator_of(task)

@@ -1,4 +1,4 @@
-"""Finished runs in a folder, one file each under its key."""
+"""The store of finished runs: a folder with one file for each, under its key."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Store(Generic[TaskT, OutcomeT]):
         self.kind = kind
 
     def get(self, key: str) -> OutcomeT | None:
-        """Give the outcome of a run; None where there is none, or its file is damaged."""
+        """Read the outcome of a run; None where there is none, or its file is damaged."""
         try:
             return self.kind.read(self._file(key).read_bytes())
         except (OSError, ValueError, RecursionError):
@@ -82,7 +82,7 @@ class Store(Generic[TaskT, OutcomeT]):
 
 
 def default_folder() -> Path:
-    """Where runs are kept: in the user's cache, or where PROFILETOOL_RUNS says."""
+    """Folder of runs: PROFILETOOL_RUNS where it is set, else one in the user's cache."""
     asked = os.environ.get(FOLDER_VARIABLE)
     if asked:
         return Path(asked)

@@ -1,4 +1,4 @@
-"""Many runs at once: in this process, on processes of this machine, or on a cluster."""
+"""The campaign engine: many runs in this process, on this machine's cores, or on a cluster."""
 
 from __future__ import annotations
 

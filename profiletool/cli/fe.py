@@ -97,8 +97,7 @@ def finger(
         typer.echo(told if as_json else text, nl=False)
         if out is not None:
             title = "the paper's finger"
-            files = outputs.fe_files(run, title, told)
-            files |= outputs.trajectory_files(found, title)
+            files = outputs.fe_files(run, title, told, trajectories=True)
             write.write_folder(out, files, force)
             speaker(quiet)(f"written: {out}")
         _end(found)
@@ -201,10 +200,10 @@ def _end(found: Verification) -> None:
     ------
     NotVerified
     """
-    if found.critical is not None:
-        from profiletool.verify.run import said
+    if not found.converged:
+        from profiletool.verify.run import reason
 
         raise NotVerified(
-            f"{said(found.critical)}, before the {found.asked_bar:.2f} bar asked for; "
+            f"{reason(found)}, before the {found.asked_bar:.2f} bar asked for; "
             "ask for less with --pressure"
         )

@@ -1,1 +1,1 @@
-"""A profile to the joints of an actuator, and the actuator's shape."""
+"""Joints of an actuator for a profile, by either method, and the objective they are chosen by."""

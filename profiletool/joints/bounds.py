@@ -15,7 +15,16 @@ BASE_TURN_RAD, BASE_OFFSET_MM = float(np.radians(15.0)), 3.0
 
 
 def limits_of(model: Model, material: TubeSpec, base_free: bool = False) -> Limits:
-    """Say what the tube, the gauze and the model allow."""
+    """Bounds that the tube, the gauze and the model set.
+
+    Parameters
+    ----------
+    model : Model
+    material : TubeSpec
+    base_free : bool
+        Whether the base may leave the profile's start tangent, by up to `BASE_TURN_RAD` and
+        `BASE_OFFSET_MM`.
+    """
     low, high = model.pressure
     return Limits(
         alpha=model.alpha,
@@ -58,7 +67,7 @@ def wrap_mm(material: TubeSpec) -> float:
 
 @dataclass(frozen=True)
 class Limits:
-    """What the tube, the gauze and the user allow.
+    """Bounds that the tube, the gauze and the user set.
 
     Attributes
     ----------

@@ -1,27 +1,213 @@
-"""The misfit between a bent tube and its profile: closest points, distances, cost and Jacobian."""
+"""The misfit between a bent tube and its profile, as an objective and as a verdict.
+
+The objective is a list of terms (function, goal, weight) in least squares. Dynamic programming
+takes its cost at every point, the polish its residuals and their Jacobian, the correction its cost
+and its terms' rows. A new aim is one more `Term`: in `shape_terms` where it has a value at every
+point of the profile, in `tube_terms` where it has one for the whole tube.
+
+Glossary
+--------
+M : points of the profile that count;  q : numbers that are free
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, Literal
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from profiletool.records.design import Misfit
-from profiletool.records.frames import Shape
+from profiletool.records.frames import Shape, cross, direction
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
 
-Float32 = NDArray[np.float32]
+Values = NDArray[np.floating[Any]]  # float32 in dynamic programming, float64 elsewhere
+BoolArray = NDArray[np.bool_]
+
 DEPTH_WEIGHT = 4.0  # of the square of what lies deeper in the object than it may
+TOO_LONG_WEIGHT = 1.0  # of the square of a mm of tube beyond the longest, against one of distance
+LENGTH_WEIGHT = 0.01**2  # and of any other: of equal shapes the shortest
+LENGTH_COST_MM2 = 1e-3  # the same in dynamic programming, for a mm of tube
+_DEEP_SHARE = 0.1  # of a mm of RMS: what a mm too deep costs between polished shapes
+DEPTH_SLACK_MM = 0.1  # beyond the allowed depth, that nobody can see
 
 
-def depth_cost(depth: Float32, interference: float) -> Float32:
-    """Square of a distance, more where it lies too deep in the object (depth positive)."""
-    deep = np.maximum(depth - np.float32(interference), 0.0)
-    return np.asarray(depth * depth + np.float32(DEPTH_WEIGHT) * deep * deep, dtype=np.float32)
+@dataclass(frozen=True)
+class Deviation:
+    """A bent tube against its profile: the quantities that terms are functions of.
+
+    A term that needs another quantity gets a field here, and its callers fill it.
+
+    Attributes
+    ----------
+    distance : (..., M) mm
+        Signed, of the profile's points (see `profiletool.joints.closest.ClosestPoints`).
+    jacobian : (M, q), optional
+        Derivatives of the distances.
+    length : float, mm
+        Of the tube.
+    length_jacobian : (q,), optional
+    """
+
+    distance: Values
+    jacobian: FloatArray | None = None
+    length: float = 0.0
+    length_jacobian: FloatArray | None = None
+
+    def moved(self, change: FloatArray) -> Deviation:
+        """Give the distances after a change of the numbers, (q,), to first order."""
+        assert self.jacobian is not None
+        return replace(self, distance=self.distance + self.jacobian @ change)
+
+
+def _distance(at: Deviation) -> Values:
+    return at.distance
+
+
+def _distance_slope(at: Deviation) -> FloatArray:
+    assert at.jacobian is not None
+    return at.jacobian
+
+
+def _length(at: Deviation) -> Values:
+    return np.array([at.length])
+
+
+def _length_slope(at: Deviation) -> FloatArray:
+    assert at.length_jacobian is not None
+    return at.length_jacobian[None, :]
+
+
+@dataclass(frozen=True)
+class Term:
+    """One aim: a function shall take a goal; the square of what it misses counts by a weight.
+
+    Attributes
+    ----------
+    function, slope : callable
+        Values (..., R) of a `Deviation`, and their derivatives (R, q).
+    goal : float
+    weight : float
+    counts : {"both", "below", "above"}
+        On which side of the goal a value counts.
+    """
+
+    function: Callable[[Deviation], Values]
+    slope: Callable[[Deviation], FloatArray]
+    goal: float
+    weight: float
+    counts: Literal["both", "below", "above"] = "both"
+
+    def active(self, at: Deviation) -> BoolArray:
+        """Tell which values lie on the side that counts: (..., R)."""
+        values = self.function(at)
+        if self.counts == "both":
+            return np.ones(values.shape, dtype=bool)
+        return values < self.goal if self.counts == "below" else values > self.goal
+
+    def missed(self, at: Deviation) -> Values:
+        """Give what the values miss of the goal, 0 on the side that does not count: (..., R)."""
+        off: Values = self.function(at) - self.goal
+        if self.counts == "both":
+            return off
+        return np.minimum(off, 0.0) if self.counts == "below" else np.maximum(off, 0.0)
+
+    def squares(self, at: Deviation) -> Values:
+        """Give the weighted squares: (..., R)."""
+        off = self.missed(at)
+        return self.weight * (off * off)
+
+    def residuals(self, at: Deviation) -> FloatArray:
+        """Give residuals whose squares are `squares`: (R,)."""
+        return np.asarray(np.sqrt(self.weight) * self.missed(at), dtype=float)
+
+    def jacobian(self, at: Deviation) -> FloatArray:
+        """Differentiate `residuals`: (R, q)."""
+        rows = np.sqrt(self.weight) * self.slope(at)
+        return np.asarray(rows if self.counts == "both" else rows * self.active(at)[:, None])
+
+    def linear(self, at: Deviation, rows: BoolArray) -> tuple[FloatArray, FloatArray]:
+        """Give Jacobian and residuals of some rows, as if the side that counts were known.
+
+        Parameters
+        ----------
+        at : Deviation
+        rows : (R,) bool
+        """
+        scale = np.sqrt(self.weight)
+        off = (self.function(at) - self.goal)[rows]
+        return scale * self.slope(at)[rows], np.asarray(scale * off, dtype=float)
+
+
+def shape_terms(interference_mm: float) -> tuple[Term, ...]:
+    """Give the aims that a bent shape is judged by, all of one value at every profile point.
+
+    The tube shall lie on the profile, and nowhere deeper in the object than ``interference_mm``.
+    """
+    return (
+        Term(_distance, _distance_slope, 0.0, 1.0),
+        Term(_distance, _distance_slope, -interference_mm, DEPTH_WEIGHT, "below"),
+    )
+
+
+def tube_terms(max_length_mm: float) -> tuple[Term, ...]:
+    """Give the aims for the tube itself: not too long, and of equal shapes the shortest."""
+    return (
+        Term(_length, _length_slope, max_length_mm, TOO_LONG_WEIGHT, "above"),
+        Term(_length, _length_slope, 0.0, LENGTH_WEIGHT),
+    )
+
+
+@dataclass(frozen=True)
+class Objective:
+    """Aims in least squares.
+
+    Attributes
+    ----------
+    shape : tuple of Term
+        Of M values each, one at every point of the profile.
+    tube : tuple of Term
+        Of one value each; they count in `residuals`, not in `cost`.
+    """
+
+    shape: tuple[Term, ...]
+    tube: tuple[Term, ...] = ()
+
+    def density(self, at: Deviation) -> Values:
+        """Give the shape's cost at every point, mm²: (..., M), in the distances' precision."""
+        total, *others = (term.squares(at) for term in self.shape)
+        for squares in others:
+            total = total + squares
+        return total
+
+    def cost(self, at: Deviation) -> FloatArray:
+        """Give the shape's mean cost, mm²: (...,)."""
+        return np.asarray(np.mean(self.density(at), axis=-1))
+
+    def residuals(self, at: Deviation) -> FloatArray:
+        """Give the residuals of all terms, one after the other: (R,)."""
+        return np.concatenate([term.residuals(at) for term in (*self.shape, *self.tube)])
+
+    def jacobian(self, at: Deviation) -> FloatArray:
+        """Differentiate `residuals`: (R, q)."""
+        return np.concatenate([term.jacobian(at) for term in (*self.shape, *self.tube)])
+
+
+def objective_of(interference_mm: float, max_length_mm: float | None = None) -> Objective:
+    """Give the objective for a bent shape, and for the tube's length where that may be too long.
+
+    Parameters
+    ----------
+    interference_mm : float
+        How deep the tube may lie in the object.
+    max_length_mm : float, optional
+    """
+    tube = () if max_length_mm is None else tube_terms(max_length_mm)
+    return Objective(shape_terms(interference_mm), tube)
 
 
 def misfit(shape: Shape, profile: Profile) -> Misfit:
@@ -35,7 +221,7 @@ def misfit(shape: Shape, profile: Profile) -> Misfit:
 
 
 def misfit_to(shape: Shape, points: FloatArray) -> Misfit:
-    """Give the same for a profile of which only the points (N, 2) are known, 0.1 mm apart."""
+    """`misfit` to a profile of which only the points (N, 2), 0.1 mm apart, are known."""
     line, target = shapely.LineString(shape.facing), _target_line(points)
     shapely.prepare([line, target])
     to_line = shapely.distance(shapely.points(points), line)
@@ -47,15 +233,25 @@ def misfit_to(shape: Shape, points: FloatArray) -> Misfit:
 
 
 def depth_inside(shape: Shape, profile: Profile) -> float:
-    """How deep the object-facing line lies inside the object at most, mm; 0 where it does not."""
+    """Largest depth of the object-facing line inside the object, mm; 0 where it stays outside."""
     target = _target_line(profile.points)
     along, inside = _beside(shape, target)
     at = np.searchsorted(profile.s, along * (profile.length_mm / target.length))
     at = np.clip(at, 0, len(profile.s) - 1)
     away = shape.facing - profile.points[at]
-    heading = profile.heading[at]
-    inward = profile.sign * (np.cos(heading) * away[:, 1] - np.sin(heading) * away[:, 0])
+    inward = profile.sign * cross(direction(profile.heading[at]), away)
     return float(np.max(inward, where=inside, initial=0.0))
+
+
+def score(fit: Misfit, depth_mm: float, interference_mm: float) -> float:
+    """RMS and a share of what lies too deep, mm: what decides between polished shapes."""
+    return fit.rms_mm + _DEEP_SHARE * max(depth_mm - interference_mm, 0.0)
+
+
+def is_good(fit: Misfit, depth_mm: float, tolerance_mm: float, interference_mm: float) -> bool:
+    """Whether a shape lies within a tolerance (RMS), and not too deep in the object."""
+    deep = depth_mm > interference_mm + DEPTH_SLACK_MM
+    return fit.rms_mm <= tolerance_mm and not deep
 
 
 def _target_line(points: FloatArray) -> shapely.LineString:
@@ -64,107 +260,7 @@ def _target_line(points: FloatArray) -> shapely.LineString:
     return shapely.LineString(points[every])
 
 
-def _beside(shape: Shape, target: shapely.LineString) -> tuple[FloatArray, NDArray[np.bool_]]:
-    """Where along the target each point of the facing line lies, and whether beyond neither end."""
+def _beside(shape: Shape, target: shapely.LineString) -> tuple[FloatArray, BoolArray]:
+    """Places (N,) along the target of the facing line's points; false where beyond either end."""
     along = np.asarray(shapely.line_locate_point(target, shapely.points(shape.facing)))
     return along, (along > 0.0) & (along < target.length)
-
-
-STEP_MM = 0.5  # spacing of the profile's points that count
-_TOUCHING_MM = 1e-6  # a distance with no direction
-
-
-def target_points(profile: Profile, step_mm: float = STEP_MM) -> FloatArray:
-    """Points of a profile that count, evenly spaced, both ends among them: (M, 2) mm."""
-    count = max(round(profile.length_mm / step_mm), 1)
-    s = np.linspace(0.0, profile.length_mm, count + 1)
-    return np.column_stack([np.interp(s, profile.s, profile.points[:, k]) for k in (0, 1)])
-
-
-@dataclass(frozen=True)
-class Feet:
-    """Where a line is nearest to each of M points.
-
-    Attributes
-    ----------
-    gap : (M,) mm
-        Distance, negative where the line lies on the object's side of the point. Beyond the
-        line's ends the distance to the end, positive.
-    normal : (M, 2)
-        Unit vectors: gap changes by normal . motion of the foot.
-    first : (M,)
-        Index of the line's point before the foot.
-    share : (M,)
-        Of the way from that point to the next one.
-    """
-
-    gap: FloatArray
-    normal: FloatArray
-    first: NDArray[np.intp]
-    share: FloatArray
-
-    def at(self, values: FloatArray) -> FloatArray:
-        """Interpolate what is given at the line's points, (..., N, k), to the feet: (..., M, k)."""
-        share = self.share[:, None]
-        here, ahead = values[..., self.first, :], values[..., self.first + 1, :]
-        return (1.0 - share) * here + share * ahead
-
-
-def feet(facing: FloatArray, points: FloatArray, sign: float) -> Feet:
-    """Find the feet of points (M, 2) on an object-facing line (N, 2)."""
-    _, nearest = cKDTree(facing).query(points)
-    nearest = np.asarray(nearest, dtype=np.intp)
-    last = len(facing) - 2
-    best: Feet | None = None
-    for first in (np.maximum(nearest - 1, 0), np.minimum(nearest, last)):
-        found = _on_segments(facing, points, first, sign)
-        if best is None:
-            best = found
-            continue
-        nearer = np.abs(found.gap) < np.abs(best.gap)
-        best = Feet(
-            np.where(nearer, found.gap, best.gap),
-            np.where(nearer[:, None], found.normal, best.normal),
-            np.where(nearer, found.first, best.first),
-            np.where(nearer, found.share, best.share),
-        )
-    assert best is not None
-    return best
-
-
-def _on_segments(
-    facing: FloatArray, points: FloatArray, first: NDArray[np.intp], sign: float
-) -> Feet:
-    start, step = facing[first], facing[first + 1] - facing[first]
-    length = np.maximum(np.hypot(*step.T), 1e-12)
-    along = np.einsum("mk,mk->m", points - start, step) / length**2
-    share = np.clip(along, 0.0, 1.0)
-    away = start + share[:, None] * step - points
-    outward = sign * np.column_stack([step[:, 1], -step[:, 0]]) / length[:, None]
-    distance = np.hypot(*away.T)
-    # Past either end of the whole line there is no inside.
-    beyond = ((along < 0.0) & (first == 0)) | ((along > 1.0) & (first == len(facing) - 2))
-    inside = (np.einsum("mk,mk->m", away, outward) < 0.0) & ~beyond
-    gap = np.where(inside, -distance, distance)
-    apart = distance > _TOUCHING_MM
-    normal = np.where(apart[:, None], away / np.where(apart, gap, 1.0)[:, None], outward)
-    return Feet(gap, normal, first, share)
-
-
-def residual_jacobian(found: Feet, motion: FloatArray) -> FloatArray:
-    """Differentiate the gaps: (M, size), given the motion of the line's points, (size, N, 2).
-
-    The feet slide along the line as it moves, which changes no distance to first order; so the
-    points whose motion is given may be material ones or any others that stay on the line.
-    """
-    return np.asarray(np.einsum("mk,qmk->mq", found.normal, found.at(motion)))
-
-
-_WEIGHT = 4.0  # of depth inside the object beyond what is allowed, against distance
-
-
-def badness(gap: FloatArray, interference_mm: float) -> FloatArray:
-    """Mean squared distance (...,) of gaps (..., M), depth beyond what is allowed weighing more."""
-    deep = np.minimum(gap + interference_mm, 0.0)
-    worth: FloatArray = np.mean(gap**2 + _WEIGHT * deep**2, axis=-1)
-    return worth

@@ -14,11 +14,18 @@ from profiletool.bending.constant_curvature import FormulaModel
 from profiletool.bending.model import Chain, Model
 from profiletool.bending.response import Response
 from profiletool.errors import UsageError
-from profiletool.joints.correction.correct import Bench, CannotBend, ModelBench, Steps, correct
-from profiletool.joints.correction.parameters import Actuator, parameters_of
-from profiletool.joints.optimal.choose import TOLERANCE_MM, Choice, Wish, choose
-from profiletool.joints.paper.assign import Layout
+from profiletool.joints.correction.correct import (
+    BendingForwardModel,
+    CannotBend,
+    ForwardModel,
+    StepSizes,
+    correct,
+)
+from profiletool.joints.correction.parameters import PosedChain, parameters_of
+from profiletool.joints.layout import Layout
+from profiletool.joints.optimal.choose import TOLERANCE_MM, Choice, ChoiceOptions, choose
 from profiletool.joints.plan import Plan
+from profiletool.profile.curve import points_at
 from profiletool.records.design import AWAY_DEG, TOWARD_DEG, Joint
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
@@ -28,6 +35,7 @@ from profiletool.records.units import BAR_PER_MPA, FloatArray
 
 S = TypeVar("S")
 _PRESSURE_STEP = 0.001  # MPa: what a gauge can be set to
+_CHOICES = 2
 _AGAIN = 0.97  # of the pressure that a tube stands, where it does not stand the one asked
 
 
@@ -36,16 +44,30 @@ def optimal_plan(
     profile: Profile,
     formula: Formula,
     say: Callable[[str], None],
-    bench: Bench[S] | None = None,
+    forward: ForwardModel[S] | None = None,
 ) -> Plan:
-    """Choose all joints at once, go to numbers that can be built, and correct them on a bench.
+    """Choose all joints at once, go to numbers that can be built, and correct them.
 
-    ``bench`` is the forward model of the correction, such as finite elements of the whole
-    actuator; None for the model that the joints were chosen by.
+    Parameters
+    ----------
+    request : Request
+    profile : Profile
+    formula : Formula
+        For the angles of the design's table; the joints are chosen by it where the user gave it.
+    say : callable
+        Takes one line of progress at a time.
+    forward : ForwardModel, optional
+        Of the correction, such as finite elements of the whole actuator; by default the model
+        that the joints are chosen by.
 
     Raises
     ------
-    UsageError, NoObject
+    UsageError
+        When the request leaves no cut or pressure that the joints are known for.
+    NoObject
+        When the profile is straight.
+    Infeasible
+        When no joints follow the profile even roughly.
     """
     model = _model(request, formula)
     if request.tube.max_pressure_bar < BAR_PER_MPA * model.pressure[0]:
@@ -54,49 +76,59 @@ def optimal_plan(
             f"{BAR_PER_MPA * model.pressure[0]:g} bar from which on the joints are known by the "
             f"{_by(model)}"
         )
-    wish = Wish(
-        tolerance_mm=request.tolerance_mm or TOLERANCE_MM,
-        interference_mm=request.interference_mm,
-        count=request.joints,
-        base_free=request.base_free,
+    posed, choice, notes = _standing(request, profile, model, say, forward)
+    bent = model.shape(posed.chain, posed.pressure, posed.pose, profile.sign)
+    return Plan(
+        layout=_layout(posed, choice, bent, model, formula),
+        by=_by(model),
+        bent=bent,
+        places=_places(bent, posed.chain, profile),
+        notes=notes,
+        choice=choice,
+        model=model,
     )
 
-    def by_model(choice: Choice) -> Actuator:
-        return _corrected(request, ModelBench(model), profile, model, choice, lambda line: None)
+
+def _standing(
+    request: Request,
+    profile: Profile,
+    model: Model,
+    say: Callable[[str], None],
+    forward: ForwardModel[S] | None,
+) -> tuple[PosedChain, Choice, tuple[str, ...]]:
+    """Choose and correct joints; where the forward model cannot bend them, again at less pressure.
+
+    Where it cannot bend the second choice either, that stays as the bending model corrects it.
+    The notes say so.
+    """
+
+    def by_model(choice: Choice) -> PosedChain:
+        bending = BendingForwardModel(model)
+        return _corrected(request, bending, profile, model, choice, lambda line: None)
 
     def say_fe(line: str) -> None:
         say(f"finite elements, {line}")
 
     material, notes = request.tube, list[str]()
-    for _ in range(2):
-        choice = _chosen(profile, model, material, wish)
+    for _ in range(_CHOICES):
+        choice = _chosen(request, profile, model, material)
         say(
             f"joints: {len(choice.chain.openF)} at {BAR_PER_MPA * choice.pressure:.2f} bar, "
             f"{choice.misfit.rms_mm:.2f} mm RMS off the profile by the {_by(model)}"
         )
-        if bench is None:
-            actuator = by_model(choice)
-            break
+        if forward is None:
+            return by_model(choice), choice, ()
         try:
-            actuator = _corrected(request, bench, profile, model, choice, say_fe)
-            break
+            posed = _corrected(request, forward, profile, model, choice, say_fe)
+            return posed, choice, tuple(notes)
         except CannotBend as problem:
             notes.append(f"the first choice of joints did not stand by FE: {problem}")
             say(notes[-1])
-            actuator = by_model(choice)
+            posed = by_model(choice)
             material = replace(material, max_pressure_bar=BAR_PER_MPA * _AGAIN * problem.reached)
             if problem.reached <= choice.limits.pressure[0]:
                 break
-    bent = model.shape(actuator.chain, actuator.pressure, actuator.pose, profile.sign)
-    return Plan(
-        layout=_layout(actuator, choice, bent, model, formula),
-        by=_by(model),
-        bent=bent,
-        places=_places(bent, actuator.chain, profile),
-        notes=tuple(notes),
-        choice=choice,
-        model=model,
-    )
+    return posed, choice, tuple(notes)
 
 
 def _model(request: Request, formula: Formula) -> Model:
@@ -113,18 +145,24 @@ def _by(model: Model) -> str:
     return "joint response" if isinstance(model, Response) else "formula"
 
 
-def _chosen(profile: Profile, model: Model, material: TubeSpec, wish: Wish) -> Choice:
+def _chosen(request: Request, profile: Profile, model: Model, material: TubeSpec) -> Choice:
+    options = ChoiceOptions(
+        tolerance_mm=request.tolerance_mm or TOLERANCE_MM,
+        interference_mm=request.interference_mm,
+        count=request.joints,
+        base_free=request.base_free,
+    )
     try:
-        return choose(profile, model, material, wish)
+        return choose(profile, model, material, options)
     except OutOfRange as error:
         raise UsageError(f"{error}; change `pitch_mm`, `max_pressure_bar` or `formula`") from error
 
 
-def _steps(request: Request) -> Steps:
+def _step_sizes(request: Request) -> StepSizes:
     material = request.tube
     thread = material.pitch_mm / material.radius_mm
     alpha = request.alpha_step_deg
-    return Steps(
+    return StepSizes(
         alpha=thread if alpha is None else float(np.radians(alpha)),
         place=request.place_step_mm,
         pressure=_PRESSURE_STEP,
@@ -133,25 +171,32 @@ def _steps(request: Request) -> Steps:
 
 def _corrected(
     request: Request,
-    bench: Bench[S],
+    forward: ForwardModel[S],
     profile: Profile,
     model: Model,
     choice: Choice,
     say: Callable[[str], None],
-) -> Actuator:
-    """Correct a choice on a bench, in numbers that can be built."""
+) -> PosedChain:
+    """Correct a choice by a forward model, in numbers that can be built."""
     parameters = parameters_of(choice.chain, profile, choice.limits)
-    vector = parameters.pack(Actuator(choice.chain, choice.pressure, choice.pose))
-    found = correct(
-        bench, model, parameters, vector, profile, _steps(request), request.interference_mm, say
+    vector = parameters.pack(PosedChain(choice.chain, choice.pressure, choice.pose))
+    corrected = correct(
+        forward,
+        model,
+        parameters,
+        vector,
+        profile,
+        _step_sizes(request),
+        request.interference_mm,
+        say,
     )
-    return found.best.actuator
+    return corrected.best.posed
 
 
 def _layout(
-    actuator: Actuator, choice: Choice, bent: Shape, model: Model, formula: Formula
+    posed: PosedChain, choice: Choice, bent: Shape, model: Model, formula: Formula
 ) -> Layout:
-    chain, pressure_bar = actuator.chain, BAR_PER_MPA * actuator.pressure
+    chain, pressure_bar = posed.chain, BAR_PER_MPA * posed.pressure
     alpha = np.degrees(chain.alpha)
     wanted = np.abs(np.degrees(angles(choice.shape, choice.chain)))
     response = np.abs(np.degrees(angles(bent, chain)))
@@ -173,7 +218,7 @@ def _layout(
         for k in range(len(F))
     )
     root = float(chain.centre[0])
-    return Layout(joints, root, chain.length, round(pressure_bar, 6), actuator.pose)
+    return Layout(joints, root, chain.length, round(pressure_bar, 6), posed.pose)
 
 
 def angles(shape: Shape, chain: Chain) -> FloatArray:
@@ -185,13 +230,13 @@ def angles(shape: Shape, chain: Chain) -> FloatArray:
     edges = np.concatenate([[0.0], np.column_stack([starts, ends]).ravel(), [chain.length]])
     middles = 0.5 * (edges[::2] + edges[1::2])
     across = shape.far - shape.facing
-    x, y = (np.interp(middles, shape.along, across[:, k]) for k in (0, 1))
+    x, y = points_at(middles, shape.along, across).T
     turns = np.diff(np.unwrap(np.arctan2(y, x)))
     return np.asarray(turns, dtype=float)
 
 
 def _places(shape: Shape, chain: Chain, profile: Profile) -> FloatArray:
     """Arc length of the profile's points nearest to the joints on the bent tube: (n,) mm."""
-    at = np.column_stack([np.interp(chain.centre, shape.along, shape.facing[:, k]) for k in (0, 1)])
+    at = points_at(chain.centre, shape.along, shape.facing)
     away = np.hypot(*np.moveaxis(profile.points[:, None] - at, -1, 0))
     return np.asarray(profile.s[np.argmin(away, axis=0)], dtype=float)

@@ -24,9 +24,22 @@ def paper_plan(
 ) -> Plan:
     """Read joints off the profile and look their angles up, as the paper does.
 
+    Parameters
+    ----------
+    request : Request
+    profile : Profile
+    formula : Formula
+    say : callable
+        Takes one line of progress at a time.
+
     Raises
     ------
-    UsageError, NoObject, Infeasible
+    UsageError
+        When the formula covers no cut or no pressure that the request allows.
+    NoObject
+        When the profile is straight.
+    Infeasible
+        When no pressure serves all joints.
     """
     material = request.tube
     try:

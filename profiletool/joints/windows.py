@@ -18,7 +18,7 @@ SAME_DEG = 1e-6
 
 @dataclass(frozen=True)
 class SeamChoice:
-    """Where the glue and weld line runs, and what it costs.
+    """A place for the glue and weld line, and the cuts that it crosses.
 
     Attributes
     ----------

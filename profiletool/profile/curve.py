@@ -36,6 +36,11 @@ def arc_length(points: FloatArray) -> FloatArray:
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
+def points_at(at: FloatArray, s: FloatArray, points: FloatArray) -> FloatArray:
+    """Interpolate points (N, 2), given at rising places s (N,), to other places (K,): (K, 2)."""
+    return np.column_stack([np.interp(at, s, points[:, k]) for k in (0, 1)])
+
+
 def resample(points: FloatArray, step: float) -> FloatArray:
     """Resample an open polyline (N, 2) equally, ends kept, at the spacing nearest to ``step``."""
     keep = np.concatenate([[True], np.any(np.diff(points, axis=0) != 0.0, axis=1)])
@@ -43,7 +48,7 @@ def resample(points: FloatArray, step: float) -> FloatArray:
     s = arc_length(points)
     count = max(round(float(s[-1]) / step), 1) + 1
     at = np.linspace(0.0, s[-1], count)
-    return np.column_stack([np.interp(at, s, points[:, 0]), np.interp(at, s, points[:, 1])])
+    return points_at(at, s, points)
 
 
 def ring_stretch(ring: FloatArray, start: float, end: float) -> FloatArray:
@@ -55,9 +60,9 @@ def ring_stretch(ring: FloatArray, start: float, end: float) -> FloatArray:
     once = arc_length(closed)
     at = (once[:-1] + once[-1] * np.array([[-1.0], [0.0], [1.0]])).ravel()
     points = np.tile(ring, (3, 1))
-    ends = [np.interp([start, end], at, points[:, k]) for k in (0, 1)]
+    first, last = points_at(np.array([start, end]), at, points)
     inside = (at > start) & (at < end)
-    return np.concatenate([[[ends[0][0], ends[1][0]]], points[inside], [[ends[0][1], ends[1][1]]]])
+    return np.concatenate([[first], points[inside], [last]])
 
 
 def smoothing_width(noise_mm: float, spacing_mm: float) -> float:

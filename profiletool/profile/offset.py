@@ -11,6 +11,7 @@ import shapely
 
 from profiletool.errors import NoObject
 from profiletool.profile.curve import ring_stretch
+from profiletool.records.frames import outward
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
 
@@ -98,8 +99,7 @@ def _area(part: shapely.Polygon) -> float:
 
 def offset_points(profile: Profile, distance_mm: float) -> FloatArray:
     """Points at a distance outward of every point of the profile, along its normals: (N, 2)."""
-    normal = np.column_stack([np.sin(profile.heading), -np.cos(profile.heading)])
-    return profile.points + profile.sign * distance_mm * normal
+    return profile.points + distance_mm * outward(profile.heading, profile.sign)
 
 
 def offset_curve(profile: Profile, distance_mm: float) -> FloatArray:

@@ -2,13 +2,34 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from formula.rubber import RubberLaw
+from profiletool.errors import UnreadableInput
 from profiletool.records.frames import Pose
 from profiletool.records.side import Side
 
 TOWARD_DEG, AWAY_DEG = 270.0, 90.0  # alpha_center of a joint that bends toward the object, or away
+_SAME_DEG = 1e-6  # design.json keeps six decimals
+
+
+def sense_of(alpha_center_deg: float, joint: int) -> float:
+    """+1 where alpha_center is 270 deg (toward the object), -1 where it is 90 (away from it).
+
+    Raises
+    ------
+    UnreadableInput
+        Naming the joint, where it bends out of the plane of the picture.
+    """
+    for center, sense in ((TOWARD_DEG, 1.0), (AWAY_DEG, -1.0)):
+        if abs(alpha_center_deg - center) <= _SAME_DEG:
+            return sense
+    raise UnreadableInput(
+        f"joint {joint} bends out of the plane of the picture, with alpha_center at "
+        f"{alpha_center_deg:g} deg: formula and joint response bend joints toward the object "
+        "(270 deg) or away from it (90 deg); others are for finite elements and templates alone"
+    )
 
 
 @dataclass(frozen=True)
@@ -36,8 +57,26 @@ class Joint:
 
     @property
     def sense(self) -> float:
-        """+1 where the joint bends toward the object, -1 away from it."""
-        return 1.0 if self.alpha_center_deg == TOWARD_DEG else -1.0
+        """+1 where the joint bends toward the object, -1 away from it, both in the plane.
+
+        Raises
+        ------
+        UnreadableInput
+            Where it bends out of the plane; see `away` and `signed` for any direction.
+        """
+        return sense_of(self.alpha_center_deg, self.number)
+
+    @property
+    def away(self) -> bool:
+        """Whether the middle of the uncut sector lies on the tube's far half."""
+        return math.sin(math.radians(self.alpha_center_deg)) > 1e-12
+
+    def signed(self, theta_deg: float) -> float:
+        """Give an angle the sign that it has in a table of angles, or take it off: - where `away`.
+
+        Finite elements report angles with it: about the joint's own axis, toward its uncut sector.
+        """
+        return -theta_deg if self.away else theta_deg
 
 
 @dataclass(frozen=True)

@@ -74,6 +74,8 @@ class Verification:
         What ended the path before that.
     elements, nodes, dofs, newton_iterations : int
     seconds : float
+    failure : str or None
+        Why no state was found beyond those, where no critical point ended the path.
     """
 
     rest: FeState
@@ -85,11 +87,12 @@ class Verification:
     dofs: int
     newton_iterations: int
     seconds: float
+    failure: str | None = None
 
     @property
     def converged(self) -> bool:
         """Whether every asked pressure was reached."""
-        return self.critical is None
+        return self.critical is None and self.failure is None
 
     @property
     def last(self) -> FeState:

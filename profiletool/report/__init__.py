@@ -1,1 +1,1 @@
-"""A design to what a person looks at."""
+"""Reports: the pictures, tables and pages that show a design to a person."""

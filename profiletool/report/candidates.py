@@ -1,4 +1,4 @@
-"""The picture of what could be the object, for a user who is asked to say."""
+"""The picture of the candidates, for a user who is asked which of them is the object."""
 
 from __future__ import annotations
 

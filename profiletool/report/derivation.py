@@ -1,4 +1,4 @@
-"""How a formula came about: the paper's Figs. 5 to 8, the residuals, and a text."""
+"""The report on a derived formula: the paper's Figs. 5 to 8, the residuals, and a text."""
 
 from __future__ import annotations
 
@@ -171,7 +171,7 @@ def residuals_csv(found: Derivation) -> bytes:
 
 
 def derivation_text(found: Derivation) -> str:
-    """Say what was run and how well each form fits."""
+    """Lay out what was run, and the errors of each form."""
     plan, data = found.plan, found.data
     runs = int(np.isfinite(found.made.theta_deg).any(axis=2).sum())
     cells = int(np.isfinite(data.theta_deg).sum())

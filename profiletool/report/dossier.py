@@ -1,4 +1,4 @@
-"""What the report is made from."""
+"""The dossier: everything that the report tells, gathered from a result."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from profiletool.verify.check import Check
 
 @dataclass(frozen=True)
 class Dossier:
-    """All that the report tells.
+    """Everything that the report tells.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class Dossier:
 
     @property
     def found(self) -> Verification | None:
-        """What finite elements say, where they were run."""
+        """Results of finite elements; None where they were not run."""
         run = None if self.check is None else self.check.run
         return None if run is None else run.verification
 
@@ -66,21 +66,21 @@ class Dossier:
 
 
 def dossier_of(result: Result, scene: Scene, template_svg: str) -> Dossier:
-    """Gather what the report tells."""
+    """Gather what the report tells; the scene and the template are those of the other files."""
     return Dossier(
-        scene,
-        result.shape,
-        result.check,
-        result.reasons,
-        formula_marks(result.design),
-        result.plan.trade_off,
-        template_svg,
-        options_of(result.request),
+        scene=scene,
+        by_formula=result.shape,
+        check=result.check,
+        reasons=result.reasons,
+        marks=formula_marks(result.design),
+        trade_off=result.plan.trade_off,
+        template_svg=template_svg,
+        options=options_of(result.request),
     )
 
 
 def formula_marks(design: Design) -> tuple[Mark, ...]:
-    """Give the formula's angles to compare with."""
-    angles = [joint.sense * joint.theta_formula_deg for joint in design.joints]
+    """Angles by the formula at the operating pressure, to compare with those of FE."""
+    angles = [joint.signed(joint.theta_formula_deg) for joint in design.joints]
     label = f"formula, {design.pressure_bar:.2f} bar"
     return (Mark(label, design.pressure_bar, angles),)

@@ -1,4 +1,4 @@
-"""How far the bent tube lies off the profile, along its arc, by formula, joint response and FE."""
+"""The plot of the distance between bent tube and profile, by formula, joint response and FE."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from profiletool.joints.misfit import feet, target_points
+from profiletool.joints.closest import closest_points, target_points
 from profiletool.records.design import Fit, Misfit
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
@@ -38,13 +38,17 @@ class Curve:
 
 
 def gap_along(shape: Shape, profile: Profile) -> tuple[FloatArray, FloatArray]:
-    """Give arc lengths on the profile and the tube's distance there, (M,) mm each.
+    """Sample the tube's distance from the profile along the arc.
 
-    Positive where the tube stands off the object, negative where it is pressed into it.
+    Returns
+    -------
+    s, gap : (M,) mm
+        Arc lengths on the profile, and signed distances there: positive where the tube stands
+        off the object, negative where it is pressed into it.
     """
     points = target_points(profile)
     s = np.linspace(0.0, profile.length_mm, len(points))
-    return s, feet(shape.facing, points, profile.sign).gap
+    return s, closest_points(shape.facing, points, profile.sign).distance
 
 
 def error_figure(scene: Scene, by_formula: Shape, title: str = "") -> Figure:

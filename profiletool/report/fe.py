@@ -1,4 +1,4 @@
-"""What finite elements say, as text, as JSON and as CSV."""
+"""Results of finite elements as text, as JSON and as CSV."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FINGER_RANGE_DEG = (75.0, 100.0, 65.0)  # of the paper's finger, below 2.0 bar
 
 
 def fe_json(found: Verification, more: Mapping[str, Any] | None = None) -> str:
-    """Write a verification as one line of JSON, then whatever ``more`` there is to say."""
+    """Write a verification as one line of JSON; the entries of ``more`` come last."""
     states = found.states
     ended = found.critical
     tree = {
@@ -39,6 +39,7 @@ def fe_json(found: Verification, more: Mapping[str, Any] | None = None) -> str:
         "air_ml": [round(s.air_ml, 3) for s in states],
         "largest_stretch": round(found.last.largest_stretch, 3),
         "thread_N": round(found.last.thread_N, 2),
+        **({} if found.failure is None else {"failure": found.failure}),
         **(more or {}),
     }
     return json.dumps(tree, allow_nan=False) + "\n"
@@ -81,14 +82,25 @@ def fe_text(found: Verification) -> str:
 def compared_text(
     design: Design, found: Verification, off: Misfit | None, target: str | None
 ) -> str:
-    """Say what FE finds beside what was wanted, and how far it lies off the target."""
+    """Lay out FE's angles beside the wanted ones, and the distance off the target.
+
+    Parameters
+    ----------
+    design : Design
+    found : Verification
+        Its last state is compared where it is at the design's pressure.
+    off : Misfit or None
+        None where there is no target.
+    target : str or None
+        Name of the file that the target was taken from.
+    """
     last = found.last
     lines = []
     if abs(last.pressure_bar - design.pressure_bar) < 1e-6:
         lines.append("joint  wanted deg  formula deg  FE deg")
         lines += [
-            f"{j.number:5d}  {j.sense * j.theta_target_deg:10.1f}  "
-            f"{j.sense * j.theta_formula_deg:11.1f}  {theta:6.1f}"
+            f"{j.number:5d}  {j.signed(j.theta_target_deg):10.1f}  "
+            f"{j.signed(j.theta_formula_deg):11.1f}  {theta:6.1f}"
             for j, theta in zip(design.joints, last.theta_deg, strict=True)
         ]
     if off is None:
@@ -102,7 +114,7 @@ def compared_text(
 
 
 def misfit_json(off: Misfit | None, target: str | None) -> dict[str, Any]:
-    """Give the distance to the target as JSON has it."""
+    """Make the entry `fit` of fe.json: distances to the target of a file, null without one."""
     if off is None:
         return {"fit": None}
     return {
@@ -111,7 +123,7 @@ def misfit_json(off: Misfit | None, target: str | None) -> dict[str, Any]:
 
 
 def ranges_text(found: Verification) -> str:
-    """Say at which pressure each joint of the finger reaches the paper's range."""
+    """Lay out the pressures at which the finger's joints reach the paper's ranges."""
     lines = []
     for k, (angle, bar) in enumerate(zip(FINGER_RANGE_DEG, _reached(found), strict=True)):
         said = "not reached" if bar is None else f"reached at {bar:.2f} bar"
@@ -120,7 +132,7 @@ def ranges_text(found: Verification) -> str:
 
 
 def ranges_json(found: Verification) -> dict[str, Any]:
-    """Give the same as JSON has it."""
+    """Make the entries of fe.json for the paper's ranges, deg, and the pressures, bar."""
     bars = [None if bar is None else round(bar, 3) for bar in _reached(found)]
     return {"range_deg": list(FINGER_RANGE_DEG), "range_reached_bar": bars}
 

@@ -1,4 +1,4 @@
-"""What all plots share: size, grid, colours, and PNG or SVG that is the same for the same plot."""
+"""The style of all plots, and their output as PNG or SVG that is the same for the same plot."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ WIDE_IN = 5.4  # of a plot that is read on a telephone too
 
 
 def styles(count: int) -> list[tuple[str, str]]:
-    """Give so many pairs of colour and marker, none of the first 49 twice."""
+    """Pair colours with markers, ``count`` times; none of the first 49 pairs twice."""
     n = len(_COLOURS)
     return [(_COLOURS[k % n], _MARKERS[(k + k // n) % n]) for k in range(count)]
 
@@ -53,7 +53,7 @@ def titled(axes: Any, title: str) -> None:
 
 
 def legend_below(figure: Figure, axes: Any, columns: int) -> None:
-    """Say what the lines of a panel are, below all panels."""
+    """Put the legend of a panel below all panels, with so many columns."""
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(
         handles, labels, loc="outside lower left", ncols=columns, frameon=False, fontsize=9.5,

@@ -63,7 +63,7 @@ class Film:
         return ring_path(facing[start : end + 1], far[start : end + 1])
 
     def centre(self, joint: int) -> tuple[str, str]:
-        """Where the middle of a joint is in the last state, mm as SVG has it."""
+        """Place of a joint's middle in the last state, mm, y down as in SVG."""
         x, y = self.lines[-1, :, self.windows[joint, 1]].sum(axis=0) // 2
         return _mm(int(x)), _mm(int(y))
 
@@ -92,7 +92,7 @@ def film_of(found: Verification, design: Design) -> Film:
 
 
 def still_of(shape: Shape, design: Design) -> Film:
-    """Take a single shape; its angles and its air are not told."""
+    """Make a film of a single shape, without angles and air."""
     n = len(design.joints)
     return _film([shape], design, np.zeros(1), np.zeros((1, n)), np.zeros(1))
 

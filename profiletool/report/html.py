@@ -134,7 +134,7 @@ def _verdict(dossier: Dossier) -> Markup:
 def _facts(dossier: Dossier) -> Markup:
     design = dossier.scene.design
     tube, source, joints = design.tube, design.source, design.joints
-    away = sum(joint.sense < 0.0 for joint in joints)
+    away = sum(joint.away for joint in joints)
     rows = [
         ("Pressure", f"{design.pressure_bar:.2f} bar"),
         ("Joints", f"{len(joints)}" + (f" ({away} away)" if away else "")),
@@ -211,6 +211,8 @@ def _pressure(dossier: Dossier, found: Verification) -> Markup:
     said = "Angle of every joint against pressure by finite elements, positive toward the object."
     if found.critical is not None:
         said += f" The path ends in a {found.critical.kind}."
+    if found.failure is not None:
+        said += f" The run ended early: {found.failure}."
     figure = theta_figure(found, "", dossier.marks if dossier.unverified is None else ())
     title = tag("h3", f"What the tube bears at {found.last.pressure_bar:.2f} bar")
     return tag(

@@ -1,4 +1,4 @@
-"""HTML and SVG from elements that are closed and texts that are escaped."""
+"""Markup for HTML and SVG: elements are closed, texts escaped."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def table(
 
 
 def pairs(rows: Iterable[tuple[str, str]], class_: str = "pairs") -> Markup:
-    """Write names and what they are."""
+    """Write a list of names and their descriptions."""
     return tag(
         "dl",
         *(tag("div", tag("dt", name), tag("dd", value)) for name, value in rows),
@@ -93,7 +93,7 @@ def signed(value: float, decimals: int = 1, unit: str = "") -> str:
 
 
 def adopted(element: str, prefix: str) -> Markup:
-    """Take an SVG document or element into a page, its ids made its own by a prefix."""
+    """Take an SVG document or element into a page; a prefix keeps its ids apart from others."""
     element = element[element.index("<svg") :].strip()
     element = re.sub(r'\bid="', f'id="{prefix}', element)
     element = re.sub(r'(href="#|url\(#)', rf"\g<1>{prefix}", element)

@@ -178,7 +178,7 @@ def _draw_joints(axes: Any, scene: Scene) -> None:
         )  # fmt: skip
         axes.text(
             *_free_place([curve[at] for curve in angles], taken),
-            f"{joint.sense * best_theta_deg(joint):.0f}°", color=INK, fontsize=10.5,
+            f"{joint.signed(best_theta_deg(joint)):.0f}°", color=INK, fontsize=10.5,
             weight="bold", ha="center", va="center", zorder=9, path_effects=_halo(3.0),
         )  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""The overlay's panel: what the design is, its joints, the legend and the notes."""
+"""The overlay's panel: facts about the design, its joints, the legend and the notes."""
 
 from __future__ import annotations
 

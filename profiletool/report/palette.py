@@ -1,4 +1,4 @@
-"""Okabe and Ito's palette: told apart by colour-blind readers too."""
+"""The colours of all pictures: Okabe and Ito's, which colour-blind readers tell apart too."""
 
 INK, BLUE, SKY, GREEN, RED, YELLOW, ORANGE, PURPLE = (
     "#1b1b1b", "#0072b2", "#56b4e9", "#009e73", "#d55e00", "#f0e442", "#e69f00", "#cc79a7",

@@ -1,4 +1,4 @@
-"""Angles against pressure, and the ways that the phalanges take, as figures."""
+"""Figures of a finite-element run: angles against pressure, and trajectories of the phalanges."""
 
 from __future__ import annotations
 

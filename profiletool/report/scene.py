@@ -17,40 +17,18 @@ from profiletool.records.picture import Picture
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
 
-
-def scene_of(result: Result) -> Scene:
-    """Gather what the overlay shows."""
-    subject, plan, design = result.subject, result.plan, result.design
-    layout = plan.layout
-    backdrop = None
-    if subject.picture is not None and subject.origin_px is not None:
-        backdrop = backdrop_of(
-            subject.picture, subject.scale.mm_per_px, subject.origin_px, subject.rotated_deg
-        )
-    radius = 0.5 * design.tube.outer_diameter_mm
-    straight = deform((), layout.length_mm, radius, layout.pose, subject.profile.sign)
-    return Scene(
-        backdrop,
-        subject.profile,
-        plan.places,
-        design,
-        layout.bends(),
-        plan.by,
-        plan.bent,
-        straight,
-        result.check.shape if result.check is not None else None,
-        tuple((place.start, place.end) for place in result.misses),
-    )
-
-
 _LONGEST_PX = 1000  # the picture is shown no finer than the figure resolves
 
 
 @dataclass(frozen=True)
 class Backdrop:
-    """The picture behind the drawing: pixels (H, W, 3) and where they lie.
+    """The picture behind the drawing.
 
-    ``extent`` is (left, right, bottom, top) in mm, object frame.
+    Attributes
+    ----------
+    rgb : (H, W, 3) uint8
+    extent : (left, right, bottom, top) mm
+        Place of its edges in the object frame.
     """
 
     rgb: NDArray[np.uint8]
@@ -61,9 +39,24 @@ class Backdrop:
 class Scene:
     """All that the overlay shows.
 
-    ``backdrop`` is None for a drawn profile, ``fe`` (the tube by finite elements) where it was
-    not verified; ``bent`` is the tube as what the joints were chosen ``by`` bends it. ``places``
-    are the joints' on the profile, ``missed`` the stretches that the tube is far off, mm.
+    Attributes
+    ----------
+    backdrop : Backdrop or None
+        None for a drawn profile.
+    profile : Profile
+    places : (n,) mm
+        Arc lengths of the joints' middles on the profile.
+    design : Design
+    bends : sequence of Bend
+        As the formula has them.
+    by : str
+        Name of the model that the joints were chosen by.
+    bent, straight : Shape
+        The tube as that model bends it, and at rest.
+    fe : Shape or None
+        The tube by finite elements; None where it was not verified.
+    missed : sequence of (float, float)
+        Arc lengths of the stretches that the tube is far off, mm.
     """
 
     backdrop: Backdrop | None
@@ -76,6 +69,29 @@ class Scene:
     straight: Shape
     fe: Shape | None = None
     missed: Sequence[tuple[float, float]] = ()
+
+
+def scene_of(result: Result) -> Scene:
+    """Gather what the overlay shows."""
+    subject, plan, layout = result.subject, result.plan, result.plan.layout
+    backdrop = None
+    if subject.picture is not None and subject.origin_px is not None:
+        backdrop = backdrop_of(
+            subject.picture, subject.scale.mm_per_px, subject.origin_px, subject.rotated_deg
+        )
+    radius = 0.5 * result.design.tube.outer_diameter_mm
+    return Scene(
+        backdrop=backdrop,
+        profile=subject.profile,
+        places=plan.places,
+        design=result.design,
+        bends=layout.bends(),
+        by=plan.by,
+        bent=plan.bent,
+        straight=deform((), layout.length_mm, radius, layout.pose, subject.profile.sign),
+        fe=None if result.check is None else result.check.shape,
+        missed=tuple((place.start, place.end) for place in result.misses),
+    )
 
 
 def backdrop_of(

@@ -1,4 +1,4 @@
-"""The object with the tube beside it, as one SVG in millimetres, and what moves the tube."""
+"""The stage: the object with the tube beside it, as one SVG in mm with the data of its motion."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _SUBSTEPS = 24  # of the slider, between two pressures of FE
 
 @dataclass(frozen=True)
 class Frame:
-    """What the stage shows: mm, x to the right, y up."""
+    """The visible part of the plane: mm, x to the right, y up."""
 
     x0: float
     y0: float
@@ -81,7 +81,7 @@ def stage(scene: Scene, film: Film, *, by_fe: bool) -> Markup:
 
 
 def legend(scene: Scene, film: Film, *, by_fe: bool) -> Markup:
-    """Say what the lines of the stage are."""
+    """Make the legend of the stage's lines."""
     rows: list[tuple[str, str]] = [("profile", "profile to follow")]
     if scene.profile.outline is not None:
         rows.append(("silhouette", "silhouette" if scene.backdrop is not None else "outline"))
@@ -121,7 +121,7 @@ def controls(film: Film) -> Markup:
 
 
 def readout(film: Film) -> Markup:
-    """Tell pressure, angles and air of the state that is shown."""
+    """Make the display of pressure, angles and air of the state that is shown."""
     rows = [
         (f"{k + 1}", tag("span", signed(theta, 1, "°"), class_="theta"))
         for k, theta in enumerate(np.round(film.theta_deg[-1], 4).tolist())

@@ -1,4 +1,4 @@
-"""How to build an actuator, step by step, with a design's own numbers."""
+"""Instructions for building an actuator, step by step, with a design's own numbers."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Step:
 
 
 def steps(design: Design, found: Verification | None) -> tuple[Step, ...]:
-    """Give all steps from the mould to the first inflation.
+    """List all steps from the mould to the first inflation.
 
     Parameters
     ----------

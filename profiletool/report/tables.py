@@ -1,4 +1,4 @@
-"""The tables of the report: joints, what the tube bears, sensitivity, and where all comes from."""
+"""The tables of the report: joints, loads on the tube, sensitivity, and the design's origin."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _NOTHING = "–"
 
 @dataclass(frozen=True)
 class Option:
-    """What was asked for by one option of the command, and what it is where it is not given."""
+    """An option of the command: its value, and the value where it is not given."""
 
     name: str
     value: str
@@ -64,7 +64,7 @@ def slit_table(design: Design) -> Markup:
             f"{len(slit_rows(joint, pitch))}",
             f"{sum(slit.joint == joint.number for slit in found)}",
             threads_uncut(joint, design),
-            "object's" if joint.sense > 0.0 else "far",
+            "far" if joint.away else "object's",
         )
         for joint in design.joints
     ]
@@ -86,7 +86,7 @@ def pressure_table(design: Design, found: Verification) -> Markup:
 
 
 def loads(state: FeState, design: Design) -> Markup:
-    """Tell what a state of finite elements asks of rubber, gauze and air supply."""
+    """Tabulate the demands of a state of finite elements on rubber, gauze and air supply."""
     stretches = list(zip(design.joints, state.joint_stretch, strict=True))
     worst, _ = max(stretches, key=lambda pair: pair[1])
     rows = [
@@ -118,7 +118,7 @@ def sensitivity_table(design: Design) -> Markup:
 
 
 def threads_uncut(joint: Joint, design: Design) -> str:
-    """Say how many axial threads a joint keeps around the tube."""
+    """Count the axial threads that a joint keeps around the tube, in words."""
     width = pi * design.tube.outer_diameter_mm * joint.alpha_closed_deg / 360.0
     return short(width / design.gauze.pitch_mm)
 
@@ -134,7 +134,7 @@ def _seen(source: Source) -> Iterator[tuple[str, str]]:
 
 
 def provenance(design: Design, found: Verification | None, options: Sequence[Option]) -> Markup:
-    """Tell what the design was made from, and how."""
+    """Tabulate what the design was made from, and how; ``options`` are those asked for."""
     source, formula = design.source, design.formula
     scale = "in mm already" if source.mm_per_px is None else scale_text(source, digits=6)
     rows: list[tuple[str, str]] = [
@@ -173,9 +173,9 @@ def _joint_row(joint: Joint, design: Design, place: float) -> tuple[str, ...]:
         f"{len(slit_rows(joint, gauze.pitch_mm))}",
         f"{joint.alpha_closed_deg:.1f}",
         threads_uncut(joint, design),
-        f"{'toward' if joint.sense > 0.0 else 'away'} ({joint.alpha_center_deg:g}°)",
+        f"{'away' if joint.away else 'toward'} ({joint.alpha_center_deg:g}°)",
         *(
-            _NOTHING if theta is None else signed(joint.sense * theta)
+            _NOTHING if theta is None else signed(joint.signed(theta))
             for theta in (
                 joint.theta_target_deg,
                 joint.theta_formula_deg,

@@ -14,7 +14,7 @@ _COLUMNS = ("pressure_bar", "openF_mm", "alpha_closed_deg", "theta_deg")
 
 
 def scale_text(source: Source, digits: int = 4) -> str:
-    """Say a picture's scale, and how sure it is where that was measured."""
+    """Tell a picture's scale, with its error where that was measured."""
     error = source.scale_error_share
     within = "" if error is None else f", within {100.0 * error:.2g} %"
     return f"{source.mm_per_px:.{digits}g} mm per pixel{within}"
@@ -58,7 +58,7 @@ def theta_csv(table: Table) -> str:
 
 
 def assignment_text(openF: Sequence[float], wanted: Sequence[float], found: Assignment) -> str:
-    """Lay out the result of the look-up."""
+    """Lay out joints of given cuts, mm, wanted angles, deg, and what the formula assigns."""
     rows = zip(openF, wanted, found.alpha_closed_deg, found.theta_deg, strict=True)
     lines = [
         f"pressure {found.pressure_bar:.2f} bar",
@@ -73,7 +73,7 @@ def assignment_text(openF: Sequence[float], wanted: Sequence[float], found: Assi
 
 
 def assignment_json(found: Assignment) -> str:
-    """Write the result of the look-up as JSON."""
+    """Write what the formula assigns as JSON."""
     tree: dict[str, object] = {
         "pressure_bar": found.pressure_bar,
         "alpha_closed_deg": list(found.alpha_closed_deg),

@@ -1,4 +1,4 @@
-"""What more joints and more pressure bring: a table and a plot."""
+"""The trade-off of joints and pressure against the distance off the profile: table and plot."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def trade_off_csv(found: TradeOff) -> bytes:
 
 
 def trade_off_figure(found: TradeOff, design: Design) -> Figure:
-    """Draw the error against the number of joints, and against pressure."""
+    """Draw the RMS distance over the number of joints, and over pressure; the design is marked."""
     figure, (upper, lower) = panels(2, WIDE_IN, 7.2, below=True)
     _draw_numbers(upper, found, design)
     _draw_pressures(lower, found, design)

@@ -1,22 +1,27 @@
-"""An attempt at a design: the plan, the design and its finite-element run, to be judged."""
+"""An attempt at a design: the plan, the design and its finite-element run."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from formula.theta import Formula
+from profiletool.bending.kinematics import deform
+from profiletool.joints.misfit import misfit
 from profiletool.joints.plan import Plan
-from profiletool.records.design import Design
+from profiletool.joints.windows import best_seam
+from profiletool.records.design import Design, Fit, FormulaRef, Gauze, Source, Tube
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request
-from profiletool.subject.find import Subject
+from profiletool.subject.find import Subject, digest_of
 from profiletool.verify.check import Check
 
 
 @dataclass(frozen=True)
 class Attempt:
-    """A design before its verdict, with everything that it was made from.
+    """A design with everything that it was made from, to be judged.
 
     Attributes
     ----------
@@ -48,3 +53,69 @@ class Attempt:
     def best_shape(self) -> Shape:
         """The tube as finite elements bend it, else as the joints were chosen by."""
         return (self.check.shape if self.check is not None else None) or self.plan.bent
+
+
+def attempt_of(request: Request, subject: Subject, formula: Formula, plan: Plan) -> Attempt:
+    """Make the design of a plan; finite elements and the verdict come later.
+
+    Parameters
+    ----------
+    request : Request
+    subject : Subject
+    formula : Formula
+        Bends the tube as the design's formula says, whatever the joints were chosen by.
+    plan : Plan
+
+    Returns
+    -------
+    Attempt
+        Not verified and without notes.
+    """
+    profile, layout = subject.profile, plan.layout
+    radius = request.tube.radius_mm
+    shape = deform(layout.bends(), layout.length_mm, radius, layout.pose, profile.sign)
+    design = _design(request, subject, formula, plan, shape)
+    return Attempt(request, subject, formula, plan, design, shape, None)
+
+
+def _design(
+    request: Request, subject: Subject, formula: Formula, plan: Plan, shape: Shape
+) -> Design:
+    """Gather the design; whether it is feasible and what its user should know comes later."""
+    material, profile, layout = request.tube, subject.profile, plan.layout
+    response = None if plan.by == "formula" else misfit(plan.bent, profile)
+    seam = best_seam(layout.joints).seam_deg
+    gauze = Gauze(material.pitch_mm, material.thread_mm, material.turns, seam)
+    return Design(
+        source=Source(
+            file=request.file.name,
+            sha256=digest_of(request),
+            mm_per_px=subject.scale.mm_per_px if subject.picture is not None else None,
+            scale_source=subject.scale.source,
+            side=request.side,
+            profile_length_mm=profile.length_mm,
+            bridged_share=float(np.mean(profile.bridged)),
+            origin_px=subject.origin_px,
+            rotated_deg=subject.rotated_deg,
+            symmetric=request.look.symmetric,
+            scale_error_share=subject.scale.measured_error,
+            confidence=None if subject.silhouette is None else subject.silhouette.confidence,
+        ),
+        tube=Tube(
+            material.outer_diameter_mm,
+            material.wall_mm,
+            layout.root_mm,
+            layout.length_mm,
+            material.rubber,
+        ),
+        gauze=gauze,
+        formula=FormulaRef(formula.name, formula.sha256),
+        pressure_bar=layout.pressure_bar,
+        joints=layout.joints,
+        base_pose=layout.pose,
+        fit=Fit(formula=misfit(shape, profile), fe=None, response=response),
+        feasible=True,  # until the verdict
+        verified=False,
+        warnings=(),
+        method=request.method,
+    )

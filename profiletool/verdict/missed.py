@@ -1,4 +1,4 @@
-"""What of a profile a chosen actuator misses, where, and why, in words."""
+"""Stretches of a profile that a chosen actuator misses: where they lie, and why."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from profiletool.bending.model import Model
 from profiletool.joints.bounds import cuts_of, wrap_mm
-from profiletool.joints.misfit import STEP_MM, feet, target_points
+from profiletool.joints.closest import STEP_MM, closest_points, target_points
 from profiletool.joints.optimal.bends import tabulate
 from profiletool.joints.optimal.choose import Choice
 from profiletool.records.profile import Profile
@@ -82,8 +82,7 @@ def missed(
     say = place or (lambda s: f"{s:.0f} mm down the profile")
     points = target_points(profile)
     s = np.linspace(0.0, profile.length_mm, len(points))
-    found = feet(choice.shape.facing, points, profile.sign)
-    off = np.abs(found.gap)
+    off = np.abs(closest_points(choice.shape.facing, points, profile.sign).distance)
     most = choice.limits.pressure[1]
     radii = {sense: tightest_radius(model, material, most, sense) for sense in _SENSES}
     tip = np.hypot(*(points - choice.shape.facing[-1]).T)
@@ -115,20 +114,20 @@ def reasons(
     tolerance_mm: float,
     place: Callable[[float], str] | None = None,
 ) -> tuple[str, ...]:
-    """Say why a profile cannot be followed to the tolerance; nothing where it is."""
-    found = [m.reason for m in missed(profile, choice, model, material, tolerance_mm, place)]
+    """Reasons why a profile cannot be followed to the tolerance; none where it is."""
+    texts = [m.reason for m in missed(profile, choice, model, material, tolerance_mm, place)]
     if choice.chain.length > material.max_length_mm + _SLACK_MM:
-        found.append(
+        texts.append(
             f"the tube would be {choice.chain.length:.1f} mm long, more than "
             f"{material.max_length_mm:g} mm; shorten the stretch (`start_pct`, `end_pct`), or "
             "raise `max_length_mm`"
         )
-    if choice.misfit.rms_mm > tolerance_mm and not found:
-        found.append(
+    if choice.misfit.rms_mm > tolerance_mm and not texts:
+        texts.append(
             f"the shape lies {choice.misfit.rms_mm:.2f} mm RMS off the profile, more than "
             f"{tolerance_mm:g} mm; {_other(choice)}"
         )
-    return tuple(found)
+    return tuple(texts)
 
 
 def _runs(where: NDArray[np.bool_]) -> list[tuple[int, int]]:
@@ -143,7 +142,7 @@ def _runs(where: NDArray[np.bool_]) -> list[tuple[int, int]]:
 
 
 def _tightest(profile: Profile, start: float, end: float, radii: dict[float, float]) -> str:
-    """Say where between two arc lengths the profile turns too fast; empty where it does not."""
+    """Name the place between two arc lengths where the profile turns too fast; empty for none."""
     s = np.arange(max(start, 0.0), min(end, profile.length_mm), STEP_MM)
     low, high = (np.clip(s + half, 0.0, profile.length_mm) for half in (-_HALF_MM, _HALF_MM))
     turned = profile.sign * (_heading(profile, high) - _heading(profile, low))

@@ -8,9 +8,10 @@ import numpy as np
 
 from formula.theta import Formula, beyond
 from profiletool.bending.kinematics import meets_itself
+from profiletool.joints.layout import Layout
 from profiletool.joints.misfit import depth_inside
-from profiletool.joints.paper.assign import NEAR_DEG, Layout
-from profiletool.joints.paper.sectors import Sector
+from profiletool.joints.paper.assign import NEAR_DEG
+from profiletool.joints.paper.sectors import BendingSector
 from profiletool.joints.paper_method import PAPER_TOLERANCE_MM
 from profiletool.joints.windows import best_seam, off_mesh
 from profiletool.records.design import Design, Gauze, Joint, Misfit
@@ -131,7 +132,7 @@ def disagreement(joints: Sequence[Joint], pressure_bar: float) -> Iterator[str]:
 
 
 def polygon_warnings(
-    sectors: Sequence[Sector], tolerance_mm: float, count: int | None
+    sectors: Sequence[BendingSector], tolerance_mm: float, count: int | None
 ) -> Iterator[str]:
     """Say what is wrong with the polygon that was asked for."""
     off = max(sector.deviation_mm for sector in sectors)

@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from formula.theta import Formula
+from profiletool.joints.layout import Layout
 from profiletool.joints.optimal.choose import TOLERANCE_MM
-from profiletool.joints.paper.assign import Layout
 from profiletool.joints.paper.pieces import Rules
-from profiletool.joints.paper.sectors import Sector
+from profiletool.joints.paper.sectors import BendingSector
 from profiletool.records.design import Design
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request, TubeSpec
@@ -36,7 +36,7 @@ def reasons_of(attempt: Attempt, misses: Sequence[Missed]) -> tuple[str, ...]:
 
 
 def shortfalls(
-    sectors: Sequence[Sector],
+    sectors: Sequence[BendingSector],
     layout: Layout,
     rules: Rules,
     material: TubeSpec,
@@ -71,7 +71,7 @@ def shortfalls(
     return tuple(reasons)
 
 
-def _missing(sector: Sector, rules: Rules) -> Iterator[str]:
+def _missing(sector: BendingSector, rules: Rules) -> Iterator[str]:
     """Say what one joint cannot do."""
     if sector.blocked:
         yield "there is nothing for it to bend; ask for fewer joints"
@@ -90,7 +90,7 @@ def _missing(sector: Sector, rules: Rules) -> Iterator[str]:
         )
 
 
-def _off(sector: Sector, rules: Rules) -> Iterator[str]:
+def _off(sector: BendingSector, rules: Rules) -> Iterator[str]:
     """Say where the polygon leaves the profile."""
     if sector.deviation_mm > rules.tolerance_mm:
         yield (

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from fem.errors import BadGeometry, NotConverged
 from profiletool.joints.misfit import misfit_to
 from profiletool.records.design import Design
 from profiletool.records.frames import Shape
 from profiletool.records.units import FloatArray
-from profiletool.verify.run import Progress, Run, run_design, said, shortly
+from profiletool.verify.run import Progress, Run, reason, run_design, shortly
 
 DECIMALS = 4  # of what FE puts into design.json: far above the noise of the last bits
 
@@ -53,13 +51,13 @@ def check(design: Design, target: FloatArray, progress: Progress | None = None) 
     except BadGeometry as error:
         return Check(design, None, f"cannot be modelled: {error}")
     found = run.verification
-    if found.critical is not None:
-        return Check(design, run, said(found.critical))
+    if found.critical is not None or found.failure is not None:
+        return Check(design, run, reason(found))
     by_joint = zip(design.joints, found.last.theta_deg, found.last.joint_stretch, strict=True)
     joints = tuple(
         replace(
             joint,
-            theta_fe_deg=round(magnitude(theta, joint.alpha_center_deg), DECIMALS),
+            theta_fe_deg=round(joint.signed(theta), DECIMALS),
             stretch_fe=round(stretch, DECIMALS - 1),
         )
         for joint, theta, stretch in by_joint
@@ -68,8 +66,3 @@ def check(design: Design, target: FloatArray, progress: Progress | None = None) 
     off = replace(off, rms_mm=round(off.rms_mm, DECIMALS), max_mm=round(off.max_mm, DECIMALS))
     fit = replace(design.fit, fe=off)
     return Check(replace(design, joints=joints, fit=fit, verified=True), run, None)
-
-
-def magnitude(theta_deg: float, center_deg: float) -> float:
-    """Turn a signed angle into the one toward the uncut sector: negative only if it bends off."""
-    return -theta_deg if np.sin(np.radians(center_deg)) > 1e-12 else theta_deg

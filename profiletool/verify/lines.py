@@ -10,7 +10,7 @@ from fem.element import face_nodes, natural_nodes, shape
 from fem.mesh import Mesh
 from fem.solution import State
 from profiletool.bending.kinematics import STEP_MM
-from profiletool.records.frames import Pose, Shape
+from profiletool.records.frames import Pose, Shape, base_axes
 from profiletool.records.units import FloatArray
 
 
@@ -24,9 +24,7 @@ class Placement:
 
     def __call__(self, points: FloatArray) -> FloatArray:
         """Place points (N, 3) of the FE frame in the object frame: (N, 2), mm."""
-        heading = np.radians(self.pose.heading_deg)
-        along = np.array([np.cos(heading), np.sin(heading)])
-        outward = self.sign * np.array([np.sin(heading), -np.cos(heading)])
+        along, outward = base_axes(float(np.radians(self.pose.heading_deg)), self.sign)
         start = np.array([self.pose.x_mm, self.pose.y_mm])
         off = points[:, 1, None] + self.radius
         placed: FloatArray = start + points[:, 2, None] * along + off * outward

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -70,10 +70,15 @@ def inflate(
     progress : callable, optional
         Takes the pressure reached so far, bar.
 
+    Returns
+    -------
+    Run
+        As far as it goes: ``verification`` says whether, and why not, it reached all pressures.
+
     Raises
     ------
     fem.errors.NotConverged
-        When no equilibrium is found at some pressure.
+        When no equilibrium is found at the first pressure.
     """
 
     def told(pressure: float) -> None:
@@ -81,9 +86,17 @@ def inflate(
             progress(BAR_PER_MPA * pressure)
 
     asked = [p / BAR_PER_MPA for p in pressures_bar]
-    solution = solve(actuator, asked, threads=threads, progress=told)
+    failure = None
+    try:
+        solution = solve(actuator, asked, threads=threads, progress=told)
+    except NotConverged as error:
+        part = error.solution
+        if not isinstance(part, Solution) or len(part.states) < 2:
+            raise
+        solution, failure = part, shortly(error)
     place = Placement(pose, sign, actuator.radius)
-    return Run(_verification(solution, max(pressures_bar), place, thread_pitch_mm), solution)
+    found = _verification(solution, max(pressures_bar), place, thread_pitch_mm)
+    return Run(replace(found, failure=failure), solution)
 
 
 def _verification(
@@ -135,6 +148,11 @@ def shortly(error: NotConverged) -> str:
 def ended(critical: FemCritical) -> Critical:
     """Give what ended a run in bar."""
     return Critical(critical.kind, BAR_PER_MPA * critical.pressure)
+
+
+def reason(found: Verification) -> str:
+    """Say what ended a run before its last pressure; empty where nothing did."""
+    return said(found.critical) if found.critical is not None else found.failure or ""
 
 
 def said(critical: Critical) -> str:

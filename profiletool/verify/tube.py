@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fem.actuator import AWAY, TOWARD, Actuator, Window, chain
+from fem.actuator import Actuator, Window, chain
 from fem.gauze import THREAD_EA, Gauze
 from profiletool.bending.model import Chain
 from profiletool.records.design import Design
@@ -46,10 +46,8 @@ def tube_of(chain: Chain, material: TubeSpec) -> Actuator:
         When no such actuator can be modelled.
     """
     windows = tuple(
-        Window(float(centre), float(openF), float(alpha), float(TOWARD if sense > 0.0 else AWAY))
-        for centre, openF, alpha, sense in zip(
-            chain.centre, chain.openF, chain.alpha, chain.sense, strict=True
-        )
+        Window(*(float(number) for number in joint))
+        for joint in zip(chain.centre, chain.openF, chain.alpha, chain.alpha_center, strict=True)
     )
     return _tube(chain.length, windows, material, material)
 

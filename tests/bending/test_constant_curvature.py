@@ -9,7 +9,7 @@ from formula.files import load_formula
 from formula.theta import theta_deg
 from profiletool.bending.constant_curvature import FormulaModel
 from profiletool.bending.kinematics import PIVOT_SHARE
-from profiletool.bending.model import Chain, Model
+from profiletool.bending.model import Chain, Model, centers_of
 from profiletool.records.frames import Pose
 
 FORMULA = load_formula()
@@ -58,7 +58,7 @@ def test_line_is_an_arc_that_turns_toward_the_object_below(sense: float) -> None
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_the_shape_of_one_joint_holds_its_line(sense: float, sign: float) -> None:
     one = np.ones(1)
-    chain = Chain(30.0 * one, 8.0 * one, 1.9 * one, sense * one, 60.0)
+    chain = Chain(30.0 * one, 8.0 * one, 1.9 * one, centers_of(sense * one), 60.0)
     shape = MODEL.shape(chain, 0.18, Pose(0.0, 0.0, 0.0), sign)
     line = MODEL.line(8.0, 1.9, 0.18, sense)
     window = [np.interp([26.0, 34.0], shape.along, part) for part in shape.facing.T]

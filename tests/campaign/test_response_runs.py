@@ -1,3 +1,5 @@
+"""Runs for the joint response: tasks, keys, files, and the fit's ingredients."""
+
 import json
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""What a run asks for, what its key says, and what it reads off the model."""
+"""One-joint runs: the task, its key, and the numbers read off the model."""
 
 from __future__ import annotations
 

@@ -484,13 +484,39 @@ def ending_early(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("profiletool.verify.run.solve", stopped)
 
 
+def test_what_was_reached_is_shown_where_a_run_does_not_converge(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import fem
+
+    def stuck(*arguments: object, **options: object) -> fem.Solution:
+        found = fem.solve(*arguments, **options)
+        part = replace(found, states=found.states[:4])
+        raise fem.NotConverged("residual", (), part.states[-1].pressure, part)
+
+    monkeypatch.setattr("profiletool.verify.run.solve", stuck)
+    result = call(*JOINT, "--json", "--out", "stuck")
+    assert result.exit_code == 7
+    assert error_of(result).endswith(
+        "no equilibrium found beyond 0.06 bar, before the 0.20 bar asked for; "
+        "ask for less with --pressure"
+    )
+    told = json.loads(result.stdout)
+    assert told["converged"] is False
+    assert told["critical"] is None
+    assert told["failure"] == "no equilibrium found beyond 0.06 bar"
+    assert told["pressure_bar"] == [0.02, 0.04, 0.06]
+    assert len(told["theta_deg"][0]) == 3
+    assert (tmp_path / "stuck" / "theta_vs_pressure.csv").read_text().count("\n") == 4
+
+
 def never_converging(monkeypatch: pytest.MonkeyPatch) -> None:
     from fem.errors import NotConverged
 
     def fails(*_: object, **__: object) -> None:
         raise NotConverged("inverted at 0.010 bar", (), 0.001)
 
-    for module in ("run", "bench"):
+    for module in ("run", "forward"):
         monkeypatch.setattr(f"profiletool.verify.{module}.solve", fails)
 
 

@@ -11,12 +11,12 @@ import pytest
 from formula.files import load_formula
 from formula.theta import theta_deg
 from profiletool.bending.kinematics import Bend, deform
-from profiletool.bending.model import Chain
+from profiletool.bending.model import Chain, centers_of
 from profiletool.bending.response import Response
 from profiletool.errors import UsageError
 from profiletool.files.design_json import load_design
-from profiletool.joints.correction.correct import CannotBend, ModelBench, Trial
-from profiletool.joints.correction.parameters import Actuator
+from profiletool.joints.correction.correct import BendingForwardModel, CannotBend, Iterate
+from profiletool.joints.correction.parameters import PosedChain
 from profiletool.joints.optimal_method import angles, optimal_plan
 from profiletool.pipeline import Request, Result, run
 from profiletool.records.design import Design, Fit, Misfit
@@ -48,7 +48,7 @@ def chain_of(result: Result) -> Chain:
         np.array([j.centre_mm for j in joints]),
         np.array([j.openF_mm for j in joints]),
         np.radians([j.alpha_closed_deg for j in joints]),
-        np.array([j.sense for j in joints]),
+        np.radians([j.alpha_center_deg for j in joints]),
         tube.length_mm,
     )
 
@@ -60,7 +60,7 @@ def test_angles_of_a_known_shape(sign: float) -> None:
     openF = np.array([8.0, 12.0, 6.0, 14.0, 10.0])
     bends = [Bend(*three) for three in zip(centre, openF, turns, strict=True)]
     shape = deform(bends, 110.0, 10.0, Pose(3.0, -2.0, 170.0), sign)
-    chain = Chain(centre, openF, np.full(5, 2.0), np.sign(turns), 110.0)
+    chain = Chain(centre, openF, np.full(5, 2.0), centers_of(turns), 110.0)
     assert angles(shape, chain) == pytest.approx(sign * turns, abs=1e-9)
 
 
@@ -68,7 +68,7 @@ def test_angles_of_a_tube_that_bends_in_its_wrapped_sectors_too() -> None:
     # A circle: from the middle of one wrapped sector to that of the next.
     shape = deform([Bend(50.0, 100.0, 2.0)], 100.0, 10.0, Pose(0.0, 0.0, 0.0), 1.0)
     two = np.ones(2)
-    chain = Chain(np.array([20.0, 60.0]), 10.0 * two, two, two, 100.0)
+    chain = Chain(np.array([20.0, 60.0]), 10.0 * two, two, centers_of(two), 100.0)
     # Sectors of 0 to 15, 25 to 55 and 65 to 100 mm.
     assert angles(shape, chain) == pytest.approx(0.02 * np.array([32.5, 42.5]), abs=1e-4)
 
@@ -143,16 +143,18 @@ def test_less_pressure_than_joints_are_known_for(request_: Request) -> None:
         run(weak, silent)
 
 
-class Bursting(ModelBench):
+class Bursting(BendingForwardModel):
     """Finite elements for which no tube stands 1.4 bar."""
 
     def __init__(self) -> None:
         super().__init__(Response.load())
 
-    def bend(self, actuator: Actuator, sign: float, near: Trial[None] | None) -> tuple[Shape, None]:
-        if actuator.pressure > 0.14:
+    def bend(
+        self, posed: PosedChain, sign: float, near: Iterate[None] | None
+    ) -> tuple[Shape, None]:
+        if posed.pressure > 0.14:
             raise CannotBend("limit point at 1.40 bar", 0.14)
-        return super().bend(actuator, sign, near)
+        return super().bend(posed, sign, near)
 
 
 def test_a_choice_that_does_not_stand_is_made_again_with_less_pressure(request_: Request) -> None:

@@ -7,8 +7,9 @@ import pytest
 
 from formula.files import load_formula
 from profiletool.bending.kinematics import Bend, deform
-from profiletool.joints.paper.assign import Layout, joint_rules, theta_table
-from profiletool.joints.paper.sectors import Sector
+from profiletool.joints.layout import Layout
+from profiletool.joints.paper.assign import joint_rules, theta_table
+from profiletool.joints.paper.sectors import BendingSector
 from profiletool.profile.target import Reach, profile_of_object
 from profiletool.records.design import Joint, Misfit
 from profiletool.records.frames import Pose, Shape
@@ -25,7 +26,7 @@ from profiletool.verdict.reasons import shortfalls
 PAPER = load_formula()
 MATERIAL = TubeSpec()
 RULES = joint_rules(theta_table(PAPER, MATERIAL), MATERIAL, 1.0)
-GOOD = Sector(0.0, 12.4, 20.0, (0.0, 0.0), np.radians(30.0), 8.0, 0.8, 0.1, 0.0, 0.0, False)
+GOOD = BendingSector(0.0, 12.4, 20.0, (0.0, 0.0), np.radians(30.0), 8.0, 0.8, 0.1, 0.0, 0.0, False)
 JOINT = Joint(1, 20.0, 8.0, 132.0, 270.0, 30.0, 30.6, None, 10.0)
 LAYOUT = Layout((JOINT,), 10.0, 30.0, 1.9, Pose(0.0, 0.0, 180.0))
 T = np.linspace(0.0, 2.0 * np.pi, 1441)[:-1]
@@ -36,7 +37,9 @@ def place(s: float) -> str:
     return f"{s:.0f} mm down"
 
 
-def reasons(sector: Sector = GOOD, layout: Layout = LAYOUT, **options: object) -> tuple[str, ...]:
+def reasons(
+    sector: BendingSector = GOOD, layout: Layout = LAYOUT, **options: object
+) -> tuple[str, ...]:
     material = options.get("material", MATERIAL)
     return shortfalls([sector], layout, RULES, material, PAPER, options.get("count"), place)
 

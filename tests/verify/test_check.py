@@ -13,6 +13,7 @@ import fem
 from fem.errors import NotConverged
 from fem.material import PAPER_RUBBER
 from formula.rubber import RubberLaw
+from profiletool.api import verify_design
 from profiletool.bending.kinematics import deform
 from profiletool.errors import UnreadableInput
 from profiletool.files.design_json import load_design, to_json
@@ -21,7 +22,9 @@ from profiletool.records.design import Design, Joint
 from profiletool.records.frames import Pose
 from profiletool.records.profile import Profile
 from profiletool.records.side import side_sign
-from profiletool.verify.check import check, magnitude
+from profiletool.report.dossier import formula_marks
+from profiletool.report.fe import compared_text
+from profiletool.verify.check import check
 from profiletool.verify.lines import Placement
 from profiletool.verify.run import DOWN, LYING, STEPS, Run, inflate, pressures_to, run_design, solve
 from profiletool.verify.tube import actuator_of
@@ -101,7 +104,28 @@ def test_it_bends_toward_the_object_or_away(
     turned = (turned + 180.0) % 360.0 - 180.0
     # Positive theta turns the tube's end toward the object, whose side the sign tells.
     assert turned == pytest.approx(theta, abs=0.1 * abs(theta))
-    assert magnitude(theta, center) > 0.0
+    assert design.joints[0].signed(theta) > 0.0
+
+
+@pytest.mark.parametrize("center", [200.0, 160.0])
+def test_a_joint_out_of_the_plane_is_verified_all_the_same(center: float, samples: Path) -> None:
+    # 20 deg off sideways, a little to the object's half of the tube and to the far one.
+    design = short(samples, center)
+    verification = run_design(design, 0.6).verification
+    assert verification.converged
+    (theta,) = verification.last.theta_deg  # about the joint's own axis
+    assert design.joints[0].signed(theta) > 3.0
+    # Of a bend sideways little is seen in the plane.
+    start, end = verification.last.shape.facing[[0, -1]]
+    rise = abs(heading_deg(np.array([start, end])) - heading_deg(verification.rest.shape.facing))
+    assert min(rise, 360.0 - rise) < 0.4 * abs(theta)
+    # What is wanted of the joint has the sign of what finite elements find.
+    row = compared_text(design, verification, None, None).splitlines()[1].split()
+    assert np.sign([float(number) for number in row[1:]]).tolist() == [np.sign(theta)] * 3
+    (mark,) = formula_marks(design)
+    assert list(mark.theta_deg) == [np.sign(theta) * 6.0]
+    with pytest.raises(UnreadableInput, match="joint 1 bends out of the plane"):
+        verify_design(design, along(verification.last.shape.facing))
 
 
 def test_both_sides_are_mirror_images(samples: Path, run: Run) -> None:
@@ -156,7 +180,7 @@ def test_a_thicker_gauze_gives_more_stiffness(samples: Path) -> None:
 def test_a_verified_design(samples: Path, run: Run) -> None:
     design = short(samples)
     facing = run.verification.last.shape.facing
-    done = check(design, along(facing))
+    done = check(design, along(facing).points)
     assert done.failure is None
     assert done.design.verified is True
     (joint,) = done.design.joints
@@ -164,12 +188,12 @@ def test_a_verified_design(samples: Path, run: Run) -> None:
     assert done.design.fit.fe is not None
     assert done.design.fit.fe.max_mm < 0.01
     assert done.design.fit.formula == design.fit.formula
-    assert check(design, along(facing)).design == done.design
+    assert check(design, along(facing).points).design == done.design
 
 
 def test_the_fit_is_in_the_designs_own_pose(samples: Path, run: Run) -> None:
     facing = run.verification.last.shape.facing
-    moved = check(short(samples), along(facing + np.array([0.0, 1.0]))).design.fit.fe
+    moved = check(short(samples), along(facing + np.array([0.0, 1.0])).points).design.fit.fe
     assert moved is not None
     assert 0.8 < moved.rms_mm <= moved.max_mm <= 1.01
 
@@ -181,11 +205,31 @@ def test_a_design_that_does_not_converge(
         raise NotConverged("residual at 0.500 bar", (), 0.04)
 
     monkeypatch.setattr("profiletool.verify.run.solve", fails)
-    done = check(short(samples), along(run.verification.rest.shape.facing))
+    done = check(short(samples), along(run.verification.rest.shape.facing).points)
     assert done.design == short(samples)
     assert done.run is None
     assert done.shape is None
     assert done.failure == "no equilibrium found beyond 0.40 bar"
+
+
+def test_states_that_were_reached_are_kept_where_a_run_does_not_converge(
+    samples: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(*_: object, **__: object) -> None:
+        part = replace(run.solution, states=run.solution.states[:4])
+        raise NotConverged("residual at 0.300 bar", (), 0.024, part)
+
+    monkeypatch.setattr("profiletool.verify.run.solve", fails)
+    done = check(short(samples), run.verification.rest.shape.facing)
+    assert done.failure == "no equilibrium found beyond 0.24 bar"
+    assert not done.design.verified
+    assert done.shape is None
+    assert done.run is not None
+    found = done.run.verification
+    assert not found.converged
+    assert found.critical is None
+    assert found.failure == done.failure
+    assert found.theta_deg[0] == run.verification.theta_deg[0][:3]
 
 
 def test_a_limit_point_before_the_operating_pressure(
@@ -193,7 +237,7 @@ def test_a_limit_point_before_the_operating_pressure(
 ) -> None:
     ended = fem.Critical("limit point", 0.05)
     changed(monkeypatch, lambda s: replace(s, states=s.states[:-3], critical=ended))
-    done = check(short(samples), along(run.verification.rest.shape.facing))
+    done = check(short(samples), along(run.verification.rest.shape.facing).points)
     assert done.failure == "limit point at 0.50 bar"
     assert done.design.verified is False
     assert done.design.joints[0].theta_fe_deg is None
@@ -207,7 +251,7 @@ def test_a_limit_point_before_the_operating_pressure(
 def test_a_design_that_cannot_be_modelled(samples: Path, run: Run) -> None:
     design = short(samples)
     thick = replace(design, tube=replace(design.tube, wall_mm=8.0))
-    done = check(thick, along(run.verification.rest.shape.facing))
+    done = check(thick, along(run.verification.rest.shape.facing).points)
     assert done.failure is not None
     assert done.failure.startswith("cannot be modelled: a wall of 8 mm")
 

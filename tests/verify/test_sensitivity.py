@@ -11,7 +11,7 @@ import pytest
 from fem.errors import FemError
 from fem.sensitivity import Sensitivities
 from profiletool.files.design_json import load_design
-from profiletool.joints.misfit import feet, target_points
+from profiletool.joints.closest import closest_points, target_points
 from profiletool.profile.curve import arc_length
 from profiletool.records.design import Design, Joint, Sensitivity
 from profiletool.records.frames import Pose, Shape
@@ -73,7 +73,7 @@ def found(design: Design, run: Run, profile: Profile) -> tuple[Sensitivity, ...]
 
 def off(changed: Shape, profile: Profile) -> FloatArray:
     """How far a line lies off a profile that it lay on."""
-    return feet(changed.facing, target_points(profile)[:-4], 1.0).gap
+    return closest_points(changed.facing, target_points(profile)[:-4], 1.0).distance
 
 
 def test_entries_in_their_order(found: tuple[Sensitivity, ...]) -> None:

@@ -1,8 +1,8 @@
-"""An actuator corrected until its bent shape lies on the profile, whoever bends it.
+"""Correction of an actuator until its bent shape lies on the profile, by any forward model.
 
-Gauss-Newton on the numbers of `profiletool.joints.correction.parameters`: a bench gives the bent
-shape and what each number does to it. First all numbers are free; then they take the steps that can
-be built, and what stays free follows.
+Gauss-Newton on the numbers of `profiletool.joints.correction.parameters`: a forward model gives the
+bent shape and what each number does to it. First all numbers are free; then they take the steps
+that can be built, and what stays free follows.
 """
 
 from __future__ import annotations
@@ -14,10 +14,16 @@ from typing import Generic, Protocol, TypeVar
 import numpy as np
 
 from profiletool.bending.model import Model
-from profiletool.joints.correction.parameters import Actuator, Parameters, facing_motion
+from profiletool.joints.closest import (
+    ClosestPoints,
+    closest_points,
+    distance_jacobian,
+    target_points,
+)
+from profiletool.joints.correction.parameters import Parameters, PosedChain, facing_motion
 from profiletool.joints.correction.steps import Linear
-from profiletool.joints.correction.surrogate import Known
-from profiletool.joints.misfit import Feet, badness, feet, residual_jacobian, target_points
+from profiletool.joints.correction.surrogate import Surrogate
+from profiletool.joints.misfit import Deviation, objective_of
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
 from profiletool.records.units import BAR_PER_MPA, FloatArray
@@ -26,13 +32,13 @@ S = TypeVar("S")
 
 _SHORTEST = 0.1  # share of a step's reach below which it gives up
 _MOST_FREE, _MOST_BUILT = 5, 5
-_WORTH = 0.8  # of the badness: a step that promises less is not taken
+_WORTH = 0.8  # of the cost: a step that promises less is not taken
 _ENOUGH_MM = 0.3  # RMS of a shape whose numbers will be rounded: rounding costs as much
 _SPARE_MM = 1.0  # how far the tube goes on beyond the profile's end
 
 
 @dataclass(frozen=True)
-class Steps:
+class StepSizes:
     """The steps that numbers come in; 0 where they are free. rad, mm, MPa."""
 
     alpha: float
@@ -41,38 +47,41 @@ class Steps:
 
 
 @dataclass(frozen=True)
-class Trial(Generic[S]):
-    """A vector with the shape that it bends to, its feet on the profile, and the bench's state."""
+class Iterate(Generic[S]):
+    """A vector, the shape that it bends to, its closest points to the profile's, and a state.
+
+    The state is the forward model's own: what it needs to bend a similar actuator from here.
+    """
 
     parameters: Parameters
     vector: FloatArray
     shape: Shape
-    feet: Feet
+    closest: ClosestPoints
     state: S
 
     @property
-    def actuator(self) -> Actuator:
-        """What the vector says."""
+    def posed(self) -> PosedChain:
+        """The chain of joints of the vector."""
         return self.parameters.unpack(self.vector)
 
 
-class Bench(Protocol[S]):
-    """What bends actuators."""
+class ForwardModel(Protocol[S]):
+    """A forward model: from an actuator to its bent shape, and what each number does to it."""
 
-    def bend(self, actuator: Actuator, sign: float, near: Trial[S] | None) -> tuple[Shape, S]:
-        """Bend an actuator; ``near`` is a similar one.
+    def bend(self, posed: PosedChain, sign: float, near: Iterate[S] | None) -> tuple[Shape, S]:
+        """Bend an actuator; ``near`` is a similar one that is bent already.
 
         Raises
         ------
         CannotBend
         """
 
-    def motion(self, trial: Trial[S]) -> FloatArray:
+    def motion(self, iterate: Iterate[S]) -> FloatArray:
         """Motion of the object-facing line's points by each number: (size, N, 2)."""
 
 
 class CannotBend(Exception):
-    """An actuator has no state that a bench can find; the message says why.
+    """An actuator has no state that a forward model can find; the message says why.
 
     ``reached`` is the highest pressure that it was found at, MPa.
     """
@@ -82,36 +91,38 @@ class CannotBend(Exception):
         self.reached = reached
 
 
-class ModelBench:
-    """Bends by a model."""
+class BendingForwardModel:
+    """A forward model by a `profiletool.bending.model.Model`."""
 
     def __init__(self, model: Model) -> None:
         self._model = model
 
-    def bend(self, actuator: Actuator, sign: float, near: Trial[None] | None) -> tuple[Shape, None]:
+    def bend(
+        self, posed: PosedChain, sign: float, near: Iterate[None] | None
+    ) -> tuple[Shape, None]:
         """Bend an actuator."""
-        return self._model.shape(actuator.chain, actuator.pressure, actuator.pose, sign), None
+        return self._model.shape(posed.chain, posed.pressure, posed.pose, sign), None
 
-    def motion(self, trial: Trial[None]) -> FloatArray:
+    def motion(self, iterate: Iterate[None]) -> FloatArray:
         """Motion of the object-facing line's points by each number: (size, N, 2)."""
-        return facing_motion(trial.parameters, self._model, trial.vector, trial.shape)
+        return facing_motion(iterate.parameters, self._model, iterate.vector, iterate.shape)
 
 
 @dataclass(frozen=True)
 class Corrected(Generic[S]):
-    """What came of a correction: the best trial, and the RMS distance of every one, mm."""
+    """A corrected actuator: the best iterate, and the RMS distance of every one, mm."""
 
-    best: Trial[S]
+    best: Iterate[S]
     rms_mm: tuple[float, ...]
 
 
 def correct(
-    bench: Bench[S],
+    forward: ForwardModel[S],
     model: Model,
     parameters: Parameters,
     vector: FloatArray,
     profile: Profile,
-    steps: Steps,
+    steps: StepSizes,
     interference_mm: float,
     say: Callable[[str], None],
 ) -> Corrected[S]:
@@ -119,129 +130,129 @@ def correct(
 
     Parameters
     ----------
-    bench : Bench
+    forward : ForwardModel
     model : Model
         Says how derivatives change on the way.
     parameters : Parameters
     vector : (size,)
         The first guess.
     profile : Profile
-    steps : Steps
+    steps : StepSizes
     interference_mm : float
         How deep the tube may lie in the object.
     say : callable
-        Takes one line for every trial.
+        Takes one line for every iterate.
 
     Raises
     ------
     CannotBend
         When the first guess cannot be bent.
     """
-    loop = _Loop(bench, model, profile, interference_mm, say)
+    loop = _Loop(forward, model, profile, interference_mm, say)
     coarse = max(steps.alpha, steps.place) > 0.0
-    first = loop.trial(parameters, vector, None, "first guess")
+    first = loop.iterate(parameters, vector, None, "first guess")
     best = loop.free(first, _ENOUGH_MM if coarse else 0.0)
     return Corrected(loop.built(best, steps), tuple(loop.rms))
 
 
 class _Loop(Generic[S]):
-    """The trials of one correction."""
+    """The iterates of one correction."""
 
     def __init__(
         self,
-        bench: Bench[S],
+        forward: ForwardModel[S],
         model: Model,
         profile: Profile,
         interference_mm: float,
         say: Callable[[str], None],
     ) -> None:
-        self._bench, self._model = bench, model
-        self._interference, self._say = interference_mm, say
+        self._forward, self._model = forward, model
+        self._objective, self._say = objective_of(interference_mm), say
         self._points = target_points(profile)
         self.rms: list[float] = []
 
-    def free(self, best: Trial[S], enough_mm: float) -> Trial[S]:
+    def free(self, best: Iterate[S], enough_mm: float) -> Iterate[S]:
         """Take free steps as long as they pay and the shape is farther off than is enough."""
-        share, known = 1.0, None
+        share, surrogate = 1.0, None
         for _ in range(_MOST_FREE):
-            if self._worth(best) < enough_mm**2:
+            if self._cost(best) < enough_mm**2:
                 break
-            known = known or self._known(best)
-            target, promised = known.free(share)
-            if promised > _WORTH * self._worth(best):
+            surrogate = surrogate or self._surrogate(best)
+            target, promised = surrogate.free(share)
+            if promised > _WORTH * self._cost(best):
                 break
-            trial = self._tried(best, target, "all numbers free")
-            if trial is not None and self._worth(trial) < self._worth(best):
-                best, known = trial, None
+            iterate = self._tried(best, target, "all numbers free")
+            if iterate is not None and self._cost(iterate) < self._cost(best):
+                best, surrogate = iterate, None
             else:
                 share *= 0.4
                 if share < _SHORTEST:
                     break
         return best
 
-    def built(self, best: Trial[S], steps: Steps) -> Trial[S]:
+    def built(self, best: Iterate[S], steps: StepSizes) -> Iterate[S]:
         """Go to numbers that can be built, and on from there."""
         if not max(steps.alpha, steps.place, steps.pressure) > 0.0:
             return best
-        known, found = self._known(best), None
+        surrogate, built = self._surrogate(best), None
         tried = list[FloatArray]()
         for _ in range(_MOST_BUILT):
-            target, promised = known.built(_step_sizes(best.vector, best.parameters, steps))
+            target, promised = surrogate.built(_step_sizes(best.vector, best.parameters, steps))
             if any(np.allclose(target, other, atol=1e-9) for other in tried):
                 break
-            if found is not None and promised > _WORTH * self._worth(found):
+            if built is not None and promised > _WORTH * self._cost(built):
                 break
             tried.append(target)
-            trial = self._tried(best, target, "in steps that can be built")
-            if trial is None:
+            iterate = self._tried(best, target, "in steps that can be built")
+            if iterate is None:
                 break
-            if found is None or self._worth(trial) < self._worth(found):
-                best = found = trial
-                known = self._known(best)
+            if built is None or self._cost(iterate) < self._cost(built):
+                best = built = iterate
+                surrogate = self._surrogate(best)
             else:
-                known = known.taught(target, trial.feet.gap)
-        return best if found is None else found
+                surrogate = surrogate.broyden_update(target, iterate.closest.distance)
+        return best if built is None else built
 
-    def _worth(self, trial: Trial[S]) -> float:
-        return float(badness(trial.feet.gap, self._interference))
+    def _cost(self, iterate: Iterate[S]) -> float:
+        return float(self._objective.cost(Deviation(iterate.closest.distance)))
 
-    def _tried(self, near: Trial[S], vector: FloatArray, what: str) -> Trial[S] | None:
+    def _tried(self, near: Iterate[S], vector: FloatArray, what: str) -> Iterate[S] | None:
         try:
-            return self.trial(near.parameters.with_end(_end(near)), vector, near, what)
+            return self.iterate(near.parameters.with_end(_end(near)), vector, near, what)
         except CannotBend as problem:
             self._say(f"{what}: {problem}")
             return None
 
-    def trial(
-        self, parameters: Parameters, vector: FloatArray, near: Trial[S] | None, what: str
-    ) -> Trial[S]:
+    def iterate(
+        self, parameters: Parameters, vector: FloatArray, near: Iterate[S] | None, what: str
+    ) -> Iterate[S]:
         """Bend the actuator of a vector and lay it onto the profile."""
         at = parameters.unpack(vector)
-        shape, state = self._bench.bend(at, parameters.sign, near)
-        found = feet(shape.facing, self._points, parameters.sign)
-        self.rms.append(float(np.sqrt(np.mean(found.gap**2))))
+        shape, state = self._forward.bend(at, parameters.sign, near)
+        closest = closest_points(shape.facing, self._points, parameters.sign)
+        self.rms.append(float(np.sqrt(np.mean(closest.distance**2))))
         self._say(
-            f"{what}: {self.rms[-1]:.2f} mm RMS, {np.abs(found.gap).max():.2f} at most, "
+            f"{what}: {self.rms[-1]:.2f} mm RMS, {np.abs(closest.distance).max():.2f} at most, "
             f"at {BAR_PER_MPA * at.pressure:.3f} bar"
         )
-        return Trial(parameters, vector, shape, found, state)
+        return Iterate(parameters, vector, shape, closest, state)
 
-    def _known(self, trial: Trial[S]) -> Known:
-        low, high = trial.parameters.bounds()
+    def _surrogate(self, iterate: Iterate[S]) -> Surrogate:
+        low, high = iterate.parameters.bounds()
         linear = Linear(
-            gap=trial.feet.gap,
-            jacobian=residual_jacobian(trial.feet, self._bench.motion(trial)),
-            vector=trial.vector,
-            centre=trial.vector,
+            distance=iterate.closest.distance,
+            jacobian=distance_jacobian(iterate.closest, self._forward.motion(iterate)),
+            vector=iterate.vector,
+            centre=iterate.vector,
             low=low,
             high=high,
-            scale=trial.parameters.scale(),
-            interference_mm=self._interference,
+            scale=iterate.parameters.scale(),
+            objective=self._objective,
         )
-        return Known(linear, trial.parameters, self._model, self._points)
+        return Surrogate(linear, iterate.parameters, self._model, self._points)
 
 
-def _step_sizes(vector: FloatArray, parameters: Parameters, steps: Steps) -> FloatArray:
+def _step_sizes(vector: FloatArray, parameters: Parameters, steps: StepSizes) -> FloatArray:
     """Step of each number: the tube slides freely as long as its root keeps its length."""
     n = parameters.joints
     sizes = [steps.alpha] * n + [steps.place] * (n - 1)
@@ -249,14 +260,14 @@ def _step_sizes(vector: FloatArray, parameters: Parameters, steps: Steps) -> Flo
     return np.array(sizes + [0.0, 0.0] * parameters.limits.base_free)
 
 
-def _end(trial: Trial[S]) -> float:
+def _end(iterate: Iterate[S]) -> float:
     """Give the wrapped length at the closed end that just reaches the profile's end."""
-    found, facing = trial.feet, trial.shape.facing
-    first, share = int(found.first[-1]), float(found.share[-1])
+    closest, facing = iterate.closest, iterate.shape.facing
+    first, share = int(closest.first[-1]), float(closest.share[-1])
     left = np.hypot(*np.diff(facing[first:], axis=0).T)
     beyond = float(left.sum() - share * left[0])
     missing = 0.0
     if first == len(facing) - 2 and share >= 1.0:
-        missing = abs(float(found.gap[-1]))
-    end = trial.parameters.end_mm + missing + _SPARE_MM - beyond
+        missing = abs(float(closest.distance[-1]))
+    end = iterate.parameters.end_mm + missing + _SPARE_MM - beyond
     return float(np.ceil(end))

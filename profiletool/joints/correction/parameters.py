@@ -1,11 +1,9 @@
-"""An actuator as a vector of numbers to be fitted, and its residuals against a profile.
+"""Parameters of an actuator: the vector of the numbers that are fitted to a profile.
 
 Glossary
 --------
 n : number of joints
 place : where joint 1's centre lies along the base line, from the profile's start
-feet : the points of the object-facing line that are nearest to the profile's
-gap : what a residual is: distance, positive where the tube stands off the object, mm
 """
 
 from __future__ import annotations
@@ -16,6 +14,7 @@ import numpy as np
 
 from profiletool.bending.model import Chain, Model
 from profiletool.joints.bounds import Limits
+from profiletool.profile.curve import points_at
 from profiletool.records.frames import Pose, Shape, base_axes
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
@@ -24,7 +23,7 @@ PLACE_BACK_MM = 30.0  # joint 1 may lie this far before the profile's start
 
 
 @dataclass(frozen=True)
-class Actuator:
+class PosedChain:
     """A chain of joints under pressure, clamped in a pose; ``pressure`` in MPa."""
 
     chain: Chain
@@ -53,7 +52,7 @@ class Parameters:
 
     Attributes
     ----------
-    openF, sense : (n,)
+    openF, alpha_center : (n,)
         As in `Chain`.
     end_mm : float
         Wrapped length at the closed end.
@@ -66,7 +65,7 @@ class Parameters:
     """
 
     openF: FloatArray
-    sense: FloatArray
+    alpha_center: FloatArray
     end_mm: float
     start: tuple[float, float]
     heading: float
@@ -109,8 +108,8 @@ class Parameters:
         place = float(vector[2 * self.joints - 1])
         return self.root(place + 1e-6) > self.root(place)
 
-    def unpack(self, vector: FloatArray) -> Actuator:
-        """Build the actuator of a vector: (size,)."""
+    def unpack(self, vector: FloatArray) -> PosedChain:
+        """Build the posed chain of a vector: (size,)."""
         n = self.joints
         alpha, wrapped = vector[:n], vector[n : 2 * n - 1]
         place, pressure = (float(v) for v in vector[2 * n - 1 : 2 * n + 1])
@@ -127,11 +126,13 @@ class Parameters:
             self.start[1] + back * ty + float(offset) * ny,
             float(np.degrees(heading)),
         )
-        return Actuator(Chain(centre, self.openF, alpha, self.sense, length), pressure, pose)
+        return PosedChain(
+            Chain(centre, self.openF, alpha, self.alpha_center, length), pressure, pose
+        )
 
-    def pack(self, actuator: Actuator) -> FloatArray:
-        """Give the vector of an actuator: (size,), the inverse of `unpack` but for the end."""
-        chain, pose = actuator.chain, actuator.pose
+    def pack(self, posed: PosedChain) -> FloatArray:
+        """Give the vector of a posed chain: (size,), the inverse of `unpack` but for the end."""
+        chain, pose = posed.chain, posed.pose
         heading = float(np.radians(pose.heading_deg))
         turn = self.sign * (heading - self.heading)
         turn = float(np.remainder(turn + np.pi, 2.0 * np.pi) - np.pi)
@@ -140,10 +141,10 @@ class Parameters:
         place = float(away @ along) + float(chain.centre[0])
         F = np.diff(chain.centre) - 0.5 * (self.openF[1:] + self.openF[:-1])
         base = [turn, float(away @ across)] * self.limits.base_free
-        return np.concatenate([chain.alpha, F, [place, actuator.pressure], base])
+        return np.concatenate([chain.alpha, F, [place, posed.pressure], base])
 
     def with_end(self, end_mm: float) -> Parameters:
-        """Give the same with another wrapped length at the closed end."""
+        """Parameters with another wrapped length at the closed end, not below the least one."""
         return replace(self, end_mm=max(end_mm, self.limits.end_mm))
 
 
@@ -152,7 +153,7 @@ def parameters_of(chain: Chain, profile: Profile, limits: Limits) -> Parameters:
     x, y = (float(v) for v in profile.points[0])
     end = chain.length - float(chain.centre[-1] + 0.5 * chain.openF[-1])
     heading = float(profile.heading[0])
-    return Parameters(chain.openF, chain.sense, end, (x, y), heading, profile.sign, limits)
+    return Parameters(chain.openF, chain.alpha_center, end, (x, y), heading, profile.sign, limits)
 
 
 def facing_motion(
@@ -171,7 +172,6 @@ def facing_motion(
         moved[k] += step if moved[k] + step <= high[k] else -step
         at = parameters.unpack(moved)
         other = model.shape(at.chain, at.pressure, at.pose, parameters.sign)
-        for axis in (0, 1):
-            there = np.interp(shape.along, other.along, other.facing[:, axis])
-            motion[k, :, axis] = (there - shape.facing[:, axis]) / (moved[k] - vector[k])
+        there = points_at(shape.along, other.along, other.facing)
+        motion[k] = (there - shape.facing) / (moved[k] - vector[k])
     return motion

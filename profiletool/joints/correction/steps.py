@@ -1,4 +1,4 @@
-"""The next vector to try by a linear model of the gaps: free, or in steps that can be built.
+"""Steps of a correction by a linear model of the distances: free, or in numbers to be built.
 
 Rounding is part of the search: each number is rounded where that costs least, what is still free
 is fitted again, and in the end numbers are moved by single steps and in pairs as long as that
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
-from profiletool.joints.misfit import _WEIGHT, badness
+from profiletool.joints.misfit import Deviation, Objective
 from profiletool.records.units import FloatArray
 
 BoolArray = NDArray[np.bool_]
@@ -22,37 +22,37 @@ BoolArray = NDArray[np.bool_]
 # nearby, where the model holds.
 _DAMPING, _BUILT_DAMPING = 0.1, 0.05
 _ROUNDS = 30
+_ACTIVE_ROUNDS = 5  # in which the one-sided terms settle what counts
 
 
 @dataclass(frozen=True)
 class Linear:
-    """Gaps near a vector, to first order; M gaps, q numbers.
+    """Signed distances near a vector, to first order; M distances, q numbers.
 
     Attributes
     ----------
-    gap : (M,) mm
-        See `profiletool.joints.correction.parameters.Feet`.
+    distance : (M,) mm
+        See `profiletool.joints.closest.ClosestPoints`.
     jacobian : (M, q)
     vector, centre, low, high, scale : (q,)
-        Where the gaps were found, where better ones are looked for nearby, the bounds, and changes
-        that matter about equally.
-    interference_mm : float
-        How deep the tube may lie in the object.
+        Where the distances were found, where better ones are looked for nearby, the bounds, and
+        changes that matter about equally.
+    objective : Objective
     """
 
-    gap: FloatArray
+    distance: FloatArray
     jacobian: FloatArray
     vector: FloatArray
     centre: FloatArray
     low: FloatArray
     high: FloatArray
     scale: FloatArray
-    interference_mm: float
+    objective: Objective
 
     def predicted(self, vector: FloatArray) -> FloatArray:
-        """Gaps (M,) at another vector."""
-        gap: FloatArray = self.gap + self.jacobian @ (vector - self.vector)
-        return gap
+        """Distances (M,) at another vector."""
+        distance: FloatArray = self.distance + self.jacobian @ (vector - self.vector)
+        return distance
 
 
 def free_step(
@@ -68,30 +68,47 @@ def free_step(
     """
     at = model.vector if at is None else at
     free = np.ones(len(at), dtype=bool) if held is None else ~held
-    found = at.copy()
+    best = at.copy()
     if not free.any():
-        return found
+        return best
     low = np.maximum(model.low, model.centre - reach)[free]
     high = np.minimum(model.high, model.centre + reach)[free]
     high = np.maximum(high, low + 1e-9)
     base = np.where(free, model.vector, at)
-    gap, jacobian = model.predicted(base), model.jacobian[:, free] * model.scale[free]
+    here = Deviation(model.predicted(base), model.jacobian[:, free] * model.scale[free])
     start = model.vector[free]
-    damping = damping_mm * np.sqrt(len(gap)) * np.eye(int(free.sum()))
+    damping = damping_mm * np.sqrt(len(here.distance)) * np.eye(int(free.sum()))
     away = (start - model.centre[free]) / model.scale[free]
-    deep = np.zeros(len(gap), dtype=bool)
-    for _ in range(5):
-        extra = np.sqrt(_WEIGHT)
-        A = np.concatenate([jacobian, damping, extra * jacobian[deep]])
-        b = np.concatenate([gap, damping @ away, extra * (gap + model.interference_mm)[deep]])
-        bounds = ((low - start) / model.scale[free], (high - start) / model.scale[free])
+    bounds = ((low - start) / model.scale[free], (high - start) / model.scale[free])
+    change = _least_squares(model.objective, here, (damping, damping @ away), bounds)
+    best[free] = np.clip(start + change * model.scale[free], low, high)
+    return best
+
+
+def _least_squares(
+    objective: Objective,
+    here: Deviation,
+    damping: tuple[FloatArray, FloatArray],
+    bounds: tuple[FloatArray, FloatArray],
+) -> FloatArray:
+    """Give the change of numbers, (q,), that makes the objective and the damping's rows least.
+
+    One-sided terms: the rows that count are those that counted after the change before.
+    """
+    plain = [term for term in objective.shape if term.counts == "both"]
+    one_sided = [term for term in objective.shape if term.counts != "both"]
+    always = [term.linear(here, term.active(here)) for term in plain]
+    active = [np.zeros(len(here.distance), dtype=bool) for _ in one_sided]
+    for _ in range(_ACTIVE_ROUNDS):
+        parts = zip(one_sided, active, strict=True)
+        rows = [*always, damping, *(term.linear(here, where) for term, where in parts)]
+        A, b = (np.concatenate([row[k] for row in rows]) for k in (0, 1))
         change = lsq_linear(A, -b, bounds, method="bvls").x
-        now = gap + jacobian @ change < -model.interference_mm
-        if (now == deep).all():
+        now = [term.active(here.moved(change)) for term in one_sided]
+        if all(np.array_equal(a, b) for a, b in zip(now, active, strict=True)):
             break
-        deep = now
-    found[free] = np.clip(start + change * model.scale[free], low, high)
-    return found
+        active = now
+    return np.asarray(change, dtype=float)
 
 
 def built_step(model: Linear, step: FloatArray, reach: FloatArray) -> FloatArray:
@@ -108,21 +125,21 @@ def built_step(model: Linear, step: FloatArray, reach: FloatArray) -> FloatArray
     high = np.clip(np.floor((model.centre + reach) / size + 1e-9), low, high)
     strength = np.linalg.norm(model.jacobian, axis=0) * size
     held = np.zeros(len(step), dtype=bool)
-    found = free_step(model, reach, damping_mm=_BUILT_DAMPING)
+    best = free_step(model, reach, damping_mm=_BUILT_DAMPING)
     while (discrete & ~held).any():
-        whole = np.clip(np.round(found / size), low, high)
-        cost = np.where(discrete & ~held, np.abs(whole - found / size) * strength, np.inf)
+        whole = np.clip(np.round(best / size), low, high)
+        cost = np.where(discrete & ~held, np.abs(whole - best / size) * strength, np.inf)
         k = int(np.argmin(cost))
-        found[k] = whole[k] * size[k]
+        best[k] = whole[k] * size[k]
         held[k] = True
-        found = free_step(model, reach, held, found, _BUILT_DAMPING)
-    found = _searched(model, found, discrete, size, low, high)
-    return free_step(model, reach, discrete, found)
+        best = free_step(model, reach, held, best, _BUILT_DAMPING)
+    best = _local_search(model, best, discrete, size, low, high)
+    return free_step(model, reach, discrete, best)
 
 
-def _searched(
+def _local_search(
     model: Linear,
-    found: FloatArray,
+    best: FloatArray,
     discrete: BoolArray,
     size: FloatArray,
     low: FloatArray,
@@ -133,7 +150,7 @@ def _searched(
     where = np.flatnonzero(discrete)
     unit = [(k, way) for k in where.tolist() for way in (1.0, -1.0)]
     moves = [[one] for one in unit] + [[a, b] for a, b in combinations(unit, 2) if a[0] != b[0]]
-    change = np.zeros((len(moves), len(found)))
+    change = np.zeros((len(moves), len(best)))
     for row, move in zip(change, moves, strict=True):
         for k, way in move:
             row[k] = way * size[k]
@@ -141,20 +158,20 @@ def _searched(
     shifts = shifts - (shifts @ basis) @ basis.T
     weight = _BUILT_DAMPING / model.scale
 
-    def worth(gaps: FloatArray, vectors: FloatArray) -> FloatArray:
+    def cost(distances: FloatArray, vectors: FloatArray) -> FloatArray:
         far = ((vectors - model.centre) * weight)[..., discrete]
-        total: FloatArray = badness(gaps, model.interference_mm) + np.sum(far**2, axis=-1)
+        total: FloatArray = model.objective.cost(Deviation(distances)) + np.sum(far**2, axis=-1)
         return total
 
-    gap = model.predicted(found)
-    gap = gap - basis @ (basis.T @ gap)
-    best = float(worth(gap, found))
+    distance = model.predicted(best)
+    distance = distance - basis @ (basis.T @ distance)
+    least = float(cost(distance, best))
     for _ in range(_ROUNDS):
-        there = (found + change) / size
+        there = (best + change) / size
         allowed = ((there >= low - 1e-6) & (there <= high + 1e-6))[:, where].all(axis=1)
-        values = np.where(allowed, worth(gap + shifts, found + change), np.inf)
+        values = np.where(allowed, cost(distance + shifts, best + change), np.inf)
         k = int(np.argmin(values))
-        if not values[k] < best - 1e-9:
+        if not values[k] < least - 1e-9:
             break
-        best, found, gap = float(values[k]), found + change[k], gap + shifts[k]
-    return found
+        least, best, distance = float(values[k]), best + change[k], distance + shifts[k]
+    return best

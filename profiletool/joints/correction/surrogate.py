@@ -1,4 +1,4 @@
-"""What is known around an actuator that a bench has bent: a model that agrees with it there."""
+"""The surrogate of a forward model near an actuator that it has bent: it agrees with it there."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ from functools import cached_property
 import numpy as np
 
 from profiletool.bending.model import Model
+from profiletool.joints.closest import closest_points, distance_jacobian
 from profiletool.joints.correction.parameters import Parameters, facing_motion
 from profiletool.joints.correction.steps import Linear, built_step, free_step
-from profiletool.joints.misfit import badness, feet, residual_jacobian
+from profiletool.joints.misfit import Deviation
 from profiletool.records.units import FloatArray
 
 _REACH = 3.0  # steps over the scale
@@ -19,11 +20,22 @@ _ROUNDS = 5  # of a search
 
 
 @dataclass(frozen=True)
-class Known:
-    """What is known around a trial: its gaps and their derivatives, bent on by a model.
+class Surrogate:
+    """A forward model near one of its iterates, by a cheaper bending model.
 
-    The model's gaps are shifted so that they and their derivatives agree with the bench's at the
-    trial; what remains of the model is how the derivatives change from there.
+    The bending model's distances are shifted so that they and their derivatives agree with the
+    forward model's at the iterate; what remains of the bending model is how the derivatives change
+    from there.
+
+    Attributes
+    ----------
+    linear : Linear
+        Distances and derivatives at the iterate, by the forward model.
+    parameters : Parameters
+    model : Model
+        The bending model.
+    points : (M, 2) mm
+        Of the profile.
     """
 
     linear: Linear
@@ -32,23 +44,26 @@ class Known:
     points: FloatArray
 
     def free(self, share: float) -> tuple[FloatArray, float]:
-        """Find the best vector within a share of the reach, and the badness it promises."""
+        """Find the best vector within a share of the reach, and the cost it promises."""
         reach = share * _REACH * self.linear.scale
         return self._sought(lambda linear: free_step(linear, reach))
 
     def built(self, step: FloatArray) -> tuple[FloatArray, float]:
-        """Find the same among multiples of ``step`` (size,)."""
+        """Find the best vector among multiples of ``step`` (size,), and the cost it promises."""
         reach = _REACH * self.linear.scale
         # Coarse steps stay next to where the model holds best.
         reach = np.where(step > 0.5 * self.linear.scale, np.minimum(step, reach), reach)
         return self._sought(lambda linear: built_step(linear, step, reach))
 
-    def taught(self, vector: FloatArray, gap: FloatArray) -> Known:
-        """Correct the derivatives by the gaps that were found at another vector."""
-        missed = gap - self._near(self._bent(vector), vector).gap
+    def broyden_update(self, vector: FloatArray, distance: FloatArray) -> Surrogate:
+        """Correct the derivatives by the distances, (M,), that were found at another vector.
+
+        The least change, counted in the numbers' scales, that makes them agree (Broyden 1965).
+        """
+        error = distance - self._near(self._bent(vector), vector).distance
         way = (vector - self.linear.vector) / self.linear.scale
-        turned = np.outer(missed, way / self.linear.scale) / float(way @ way)
-        return replace(self, linear=replace(self.linear, jacobian=self.linear.jacobian + turned))
+        change = np.outer(error, way / self.linear.scale) / float(way @ way)
+        return replace(self, linear=replace(self.linear, jacobian=self.linear.jacobian + change))
 
     def _sought(self, step: Callable[[Linear], FloatArray]) -> tuple[FloatArray, float]:
         base = self.linear
@@ -56,7 +71,7 @@ class Known:
         at = best
         for _ in range(_ROUNDS):
             near = self._near(self._bent(at), at)
-            promised = float(badness(near.gap, base.interference_mm))
+            promised = float(base.objective.cost(Deviation(near.distance)))
             if promised < least:
                 best, least = at, promised
             after = step(near)
@@ -70,17 +85,17 @@ class Known:
         return self._bent(self.linear.vector)
 
     def _bent(self, vector: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Gaps and derivatives by the model alone."""
+        """Distances and derivatives by the model alone."""
         at = self.parameters.unpack(vector)
         shape = self.model.shape(at.chain, at.pressure, at.pose, self.parameters.sign)
-        found = feet(shape.facing, self.points, self.parameters.sign)
+        closest = closest_points(shape.facing, self.points, self.parameters.sign)
         motion = facing_motion(self.parameters, self.model, vector, shape)
-        return found.gap, residual_jacobian(found, motion)
+        return closest.distance, distance_jacobian(closest, motion)
 
     def _near(self, bent: tuple[FloatArray, FloatArray], vector: FloatArray) -> Linear:
-        """Gaps and derivatives at another vector: the model's, shifted."""
+        """Distances and derivatives at another vector: the model's, shifted."""
         base = self.linear
-        gap, jacobian = self._base
-        turned = base.jacobian - jacobian
-        off = base.gap - gap + turned @ (vector - base.vector)
-        return replace(base, vector=vector, gap=bent[0] + off, jacobian=bent[1] + turned)
+        distance, jacobian = self._base
+        slope = base.jacobian - jacobian
+        shift = base.distance - distance + slope @ (vector - base.vector)
+        return replace(base, vector=vector, distance=bent[0] + shift, jacobian=bent[1] + slope)

@@ -1,4 +1,4 @@
-"""What single joints look like at one pressure, tabulated for the choice among many.
+"""Lines of single joints at one pressure, tabulated for the choice among many.
 
 A joint is symmetric about its middle, so its motion is that of two straight lines that meet in a
 *vertex* at the same distance from both edges of the window, and half of its line says all.
@@ -103,7 +103,7 @@ def _lines(
 
 
 def _vertex(line: FloatArray) -> float:
-    """Where the straight lines at both ends of a joint's line meet, from the window's edge."""
+    """Distance from the window's edge to where the straight lines at a joint's ends meet, mm."""
     x, y, heading = line[-1]
     return float(x - y / np.tan(heading))
 

@@ -1,4 +1,4 @@
-"""The joints of an actuator chosen as a whole, by a model: the best that one pressure allows.
+"""The choice of all joints of an actuator together, by a model: the best that a pressure allows.
 
 First the global optimum of a discretisation (`search`), for every number of joints and every
 pressure; then everything continuous is moved until the shape is best (`polish`). The fewest joints
@@ -14,19 +14,18 @@ import numpy as np
 from profiletool.bending.model import Chain, Model
 from profiletool.errors import Infeasible, NoObject
 from profiletool.joints.bounds import Limits, cuts_of, limits_of
-from profiletool.joints.correction.parameters import Actuator
+from profiletool.joints.correction.parameters import PosedChain
+from profiletool.joints.misfit import is_good, score
 from profiletool.joints.optimal.lines import Discretisation
 from profiletool.joints.optimal.polish import Goal, Polished, at_bound, goal_of, judge, polish
-from profiletool.joints.optimal.search import MOST_JOINTS, Found, search
-from profiletool.joints.paper.pieces import cross, direction
+from profiletool.joints.optimal.search import MOST_JOINTS, SearchResult, search
 from profiletool.records.design import Misfit
-from profiletool.records.frames import Pose, Shape
+from profiletool.records.frames import Pose, Shape, cross, direction
 from profiletool.records.profile import Profile
 from profiletool.records.request import INTERFERENCE_MM, TubeSpec
 from profiletool.records.units import BAR_PER_MPA, FloatArray
 
 TOLERANCE_MM = 0.25
-DEPTH_SLACK_MM = 0.1  # beyond the interference, that nobody can see
 
 FINE = Discretisation()
 # Where no line on the profile will do: bridges over corners and hollows.
@@ -56,7 +55,7 @@ _SHORTEST_MM = 40.0
 
 @dataclass(frozen=True)
 class TradeOff:
-    """What more joints and more pressure bring.
+    """The gain of more joints and more pressure.
 
     Attributes
     ----------
@@ -73,8 +72,8 @@ class TradeOff:
 
 
 @dataclass(frozen=True)
-class Wish:
-    """What is asked of the choice.
+class ChoiceOptions:
+    """Options of the choice.
 
     Attributes
     ----------
@@ -111,7 +110,9 @@ class Choice:
     limits: Limits
 
 
-def choose(profile: Profile, model: Model, material: TubeSpec, wish: Wish | None = None) -> Choice:
+def choose(
+    profile: Profile, model: Model, material: TubeSpec, options: ChoiceOptions | None = None
+) -> Choice:
     """Choose number, places, senses, cuts and sectors of the joints, pressure and base.
 
     Parameters
@@ -119,7 +120,7 @@ def choose(profile: Profile, model: Model, material: TubeSpec, wish: Wish | None
     profile : Profile
     model : Model
     material : TubeSpec
-    wish : Wish, optional
+    options : ChoiceOptions, optional
 
     Raises
     ------
@@ -130,32 +131,32 @@ def choose(profile: Profile, model: Model, material: TubeSpec, wish: Wish | None
     formula.errors.OutOfRange
         When no cut in whole meshes is known to the model.
     """
-    wish = wish or Wish()
+    options = options or ChoiceOptions()
     away = cross(direction(profile.heading[0]), profile.points - profile.points[0])
-    if np.abs(away).max() <= wish.tolerance_mm:
+    if np.abs(away).max() <= options.tolerance_mm:
         raise NoObject(
-            f"the profile is straight to {wish.tolerance_mm:g} mm: there is nothing to bend; "
+            f"the profile is straight to {options.tolerance_mm:g} mm: there is nothing to bend; "
             "take another `side` or stretch, or a smaller `tolerance_mm`"
         )
-    limits, cuts = limits_of(model, material, wish.base_free), cuts_of(model, material)
+    limits, cuts = limits_of(model, material, options.base_free), cuts_of(model, material)
     reached = profile
     for _ in range(_CUTS):
         # What lies farther down than the tube can be long is out of reach whatever it does.
         reached = _first_part(reached, limits.max_length_mm)
-        found = _searches(reached, model, cuts, limits, wish)
-        goal = goal_of(reached, limits, wish.interference_mm)
-        best, polished = _fewest(found, model, goal, wish)
-        excess = best.actuator.chain.length - limits.max_length_mm
+        searches = _searches(reached, model, cuts, limits, options)
+        goal = goal_of(reached, limits, options.interference_mm)
+        best, polished = _fewest(searches, model, goal, options)
+        excess = best.posed.chain.length - limits.max_length_mm
         if excess <= 0.0:
             break
         reached = _first_part(reached, max(reached.length_mm - excess - 1.0, _SHORTEST_MM))
     best = _swapped(best, model, goal, cuts)
-    count = len(best.actuator.chain.openF)
+    count = len(best.posed.chain.openF)
     polished[count - 1] = np.fmin(polished[count - 1], best.misfit.rms_mm)
-    at = best.actuator
-    trade_off = TradeOff(found[0].pressure, _rms(found, reached), polished)
+    at = best.posed
+    trade_off = TradeOff(searches[0].pressure, _rms(searches, reached), polished)
     if reached is not profile:
-        best = judge(at, model, goal_of(profile, limits, wish.interference_mm))
+        best = judge(at, model, goal_of(profile, limits, options.interference_mm))
     return Choice(
         at.chain, at.pressure, at.pose, best.shape, best.misfit, best.depth, trade_off, limits
     )
@@ -176,29 +177,29 @@ def _first_part(profile: Profile, length: float) -> Profile:
 
 
 def _searches(
-    profile: Profile, model: Model, cuts: FloatArray, limits: Limits, wish: Wish
-) -> list[Found]:
+    profile: Profile, model: Model, cuts: FloatArray, limits: Limits, options: ChoiceOptions
+) -> list[SearchResult]:
     """Search on the profile, and farther off it where that does not do."""
     room = int(limits.max_length_mm / (cuts.min() + limits.wrap_mm)) + 1
-    most = min(wish.count or MOST_JOINTS, room)
-    found: list[Found] = []
-    for grid, enough in ((FINE, 2.0 * wish.tolerance_mm), (WIDE, _FAR_MM), (FAR, np.inf)):
-        found.append(search(profile, model, cuts, limits, wish.interference_mm, grid, most))
-        rms = _rms(found, profile)
-        if (rms[:, -1] if wish.count else rms).min() <= enough:
+    most = min(options.count or MOST_JOINTS, room)
+    searches: list[SearchResult] = []
+    for grid, enough in ((FINE, 2.0 * options.tolerance_mm), (WIDE, _FAR_MM), (FAR, np.inf)):
+        searches.append(search(profile, model, cuts, limits, options.interference_mm, grid, most))
+        rms = _rms(searches, profile)
+        if (rms[:, -1] if options.count else rms).min() <= enough:
             break
     if not np.isfinite(rms).any():
         raise Infeasible(
             f"no joints of this tube follow the profile at {BAR_PER_MPA * limits.pressure[1]:.2f} "
             "bar: it turns too fast; take a longer cut, more pressure or another stretch"
         )
-    return found
+    return searches
 
 
-def _rms(found: list[Found], profile: Profile) -> FloatArray:
+def _rms(searches: list[SearchResult], profile: Profile) -> FloatArray:
     """Best RMS of several searches, on the pressures of the first: (P, J)."""
-    best = found[0].cost.copy()
-    for other in found[1:]:
+    best = searches[0].cost.copy()
+    for other in searches[1:]:
         # All end at the highest pressure.
         top = best[-len(other.cost) :]
         np.minimum(top, other.cost[-len(top) :], out=top)
@@ -206,91 +207,92 @@ def _rms(found: list[Found], profile: Profile) -> FloatArray:
 
 
 def _fewest(
-    found: list[Found], model: Model, goal: Goal, wish: Wish
+    searches: list[SearchResult], model: Model, goal: Goal, options: ChoiceOptions
 ) -> tuple[Polished, FloatArray]:
     """Polish numbers of joints from below until one lies within the tolerance.
 
     Where none does, one more joint must bring its worth.
     """
-    rms = _rms(found, goal.profile).min(axis=0)
+    rms = _rms(searches, goal.profile).min(axis=0)
     polished = np.full(len(rms), np.nan)
-    least, worth = float(rms.min()), _WORTH * wish.tolerance_mm
-    if wish.count is not None:
-        numbers = np.array([_known(rms, wish.count)])
+    least, worth = float(rms.min()), _WORTH * options.tolerance_mm
+    if options.count is not None:
+        numbers = np.array([_nearest_count(rms, options.count)])
     else:
-        hopeful = rms <= max(_HOPEFUL * wish.tolerance_mm, 1.5 * least)
+        hopeful = rms <= max(_HOPEFUL * options.tolerance_mm, 1.5 * least)
         useful = np.arange(len(rms)) <= np.argmin(rms + 0.1 * worth * np.arange(len(rms)))
         numbers = np.flatnonzero(hopeful & useful)[:_MOST_POLISHED] + 1
     best: dict[int, Polished] = {}
     for n in (int(n) for n in numbers):
-        best[n] = _best_of(found, model, goal, n, rivals=1, runs=_QUICK)
-        near = best[n].misfit.rms_mm <= _NEAR * wish.tolerance_mm
+        best[n] = _best_of(searches, model, goal, n, rivals=1, runs=_QUICK)
+        near = best[n].misfit.rms_mm <= _NEAR * options.tolerance_mm
         if near:
-            best[n] = _best_of(found, model, goal, n, _RIVALS)
+            best[n] = _best_of(searches, model, goal, n, _RIVALS)
         polished[n - 1] = best[n].misfit.rms_mm
-        if near and good(best[n], wish):
+        good = is_good(best[n].misfit, best[n].depth, options.tolerance_mm, options.interference_mm)
+        if near and good:
             return best[n], polished
     chosen = min(best, key=lambda n: _score(best[n], goal) + worth * n)
-    full = _best_of(found, model, goal, chosen, _RIVALS)
+    full = _best_of(searches, model, goal, chosen, _RIVALS)
     polished[chosen - 1] = full.misfit.rms_mm
     return full, polished
 
 
-def _known(rms: FloatArray, count: int) -> int:
+def _nearest_count(rms: FloatArray, count: int) -> int:
     """Give the number of joints nearest below ``count`` that there is a path for."""
-    known = np.flatnonzero(np.isfinite(rms[:count]))
-    return int(known[-1]) + 1 if known.size else count
+    reachable = np.flatnonzero(np.isfinite(rms[:count]))
+    return int(reachable[-1]) + 1 if reachable.size else count
 
 
-def good(found: Polished, wish: Wish) -> bool:
-    """Whether a shape is as good as asked for."""
-    deep = found.depth > wish.interference_mm + DEPTH_SLACK_MM
-    return found.misfit.rms_mm <= wish.tolerance_mm and not deep
-
-
-def _score(found: Polished, goal: Goal) -> float:
-    """RMS, and a share of what lies too deep, mm."""
-    return found.misfit.rms_mm + 0.1 * max(found.depth - goal.interference, 0.0)
+def _score(polished: Polished, goal: Goal) -> float:
+    return score(polished.misfit, polished.depth, goal.interference)
 
 
 def _best_of(
-    found: list[Found], model: Model, goal: Goal, joints: int, rivals: int, runs: int = _RUNS
+    searches: list[SearchResult],
+    model: Model,
+    goal: Goal,
+    joints: int,
+    rivals: int,
+    runs: int = _RUNS,
 ) -> Polished:
     """Polish the best paths of so many joints, of all searches and pressures."""
-    cost = [(c, k, p) for k, one in enumerate(found) for p, c in enumerate(one.cost[:, joints - 1])]
-    tried = []
+    cost = [
+        (c, k, p) for k, one in enumerate(searches) for p, c in enumerate(one.cost[:, joints - 1])
+    ]
+    candidates = []
     for _, k, pressure in sorted(c for c in cost if np.isfinite(c[0]))[:rivals]:
-        start = found[k].actuator(pressure, joints, model, goal.profile, goal.limits)
-        tried.append(polish(start, model, goal, runs))
-    return min(tried, key=lambda polished: _score(polished, goal))
+        start = searches[k].posed_chain(pressure, joints, model, goal.profile, goal.limits)
+        candidates.append(polish(start, model, goal, runs))
+    return min(candidates, key=lambda polished: _score(polished, goal))
 
 
 def _swapped(best: Polished, model: Model, goal: Goal, cuts: FloatArray) -> Polished:
     """Give joints whose alpha ends at a bound the next cut, as long as it helps."""
     for _ in range(_SWAPS):
-        chain = best.actuator.chain
-        bound = at_bound(best.actuator, goal.limits)
-        tried = []
+        chain = best.posed.chain
+        bound = at_bound(best.posed, goal.limits)
+        candidates = []
         for k in np.flatnonzero(bound):
             index = int(np.argmin(np.abs(cuts - chain.openF[k]))) - int(bound[k])
             if 0 <= index < len(cuts):
                 openF = chain.openF.copy()
                 openF[k] = cuts[index]
-                actuator = replace(best.actuator, chain=replace(chain, openF=openF))
-                tried.append(polish(_fitting(actuator, goal.limits), model, goal, _QUICK))
-        better = min(tried, key=lambda polished: _score(polished, goal), default=best)
+                posed = replace(best.posed, chain=replace(chain, openF=openF))
+                candidates.append(polish(_fitting(posed, goal.limits), model, goal, _QUICK))
+        better = min(candidates, key=lambda polished: _score(polished, goal), default=best)
         if _score(better, goal) >= _score(best, goal) - 1e-6:
             break
         best = better
     return best
 
 
-def _fitting(actuator: Actuator, limits: Limits) -> Actuator:
+def _fitting(posed: PosedChain, limits: Limits) -> PosedChain:
     """Move joints apart until their windows leave the least wrapped length."""
-    chain = actuator.chain
+    chain = posed.chain
     room = 0.5 * (chain.openF[1:] + chain.openF[:-1]) + limits.wrap_mm
     F = np.maximum(np.diff(chain.centre), room)
     root = max(float(chain.centre[0]), 0.5 * float(chain.openF[0]) + limits.wrap_mm)
     centre = root + np.concatenate([[0.0], np.cumsum(F)])
     length = float(chain.length + centre[-1] - chain.centre[-1])
-    return replace(actuator, chain=replace(chain, centre=centre, length=length))
+    return replace(posed, chain=replace(chain, centre=centre, length=length))

@@ -1,4 +1,4 @@
-"""What one joint between two lines costs: the edges of the choice of joints.
+"""Costs of one joint between two lines: the edges of the choice of joints.
 
 Glossary
 --------
@@ -15,13 +15,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from profiletool.joints.misfit import Float32, depth_cost
+from profiletool.joints.misfit import LENGTH_COST_MM2, Deviation, Objective
 from profiletool.joints.optimal.bends import STEP_MM, Bends
-from profiletool.joints.optimal.lines import IntArray, Lines
+from profiletool.joints.optimal.lines import CandidateLines, IntArray
 from profiletool.records.units import FloatArray
 
-BoolArray = NDArray[np.bool_]
-_LENGTH_WEIGHT = 1e-3  # mm² for a mm of tube: of equal shapes the shortest
+Float32 = NDArray[np.float32]
 _BACK_MM = 30.0  # a first vertex may lie so far behind the profile's start
 
 
@@ -75,38 +74,58 @@ class Priced:
     cut: NDArray[np.intp]
 
 
-def summed_cost(lines: Lines, interference: float) -> FloatArray:
-    """Cost of a line at all points up to each: (N, M + 1)."""
-    cost = depth_cost(lines.out.astype(np.float32), interference) * lines.weight
+@dataclass(frozen=True)
+class _Pairs:
+    """Pairs of lines, and the points of the profile about the vertex between them; (E,) each.
+
+    ``start``, ``end``, ``before`` and ``after`` are those of `Edges`. The vertex lies before the
+    point ``split``; points from ``low`` to before ``high`` are near it and count.
+    """
+
+    start: IntArray
+    end: IntArray
+    before: FloatArray
+    after: FloatArray
+    split: IntArray
+    low: IntArray
+    high: IntArray
+
+
+def summed_cost(lines: CandidateLines, objective: Objective) -> FloatArray:
+    """Cost of every line at all points before each: (N, M + 1) mm³, the first column 0.
+
+    In single precision, as the edges' costs are; the sums in double.
+    """
+    cost = objective.density(Deviation(-lines.out.astype(np.float32))) * lines.weight
     total = np.zeros((cost.shape[0], cost.shape[1] + 1))
     np.cumsum(cost, axis=1, out=total[:, 1:])
     return total
 
 
 def edges_of(
-    lines: Lines,
+    lines: CandidateLines,
     sense: float,
     bends: Sequence[Bends],
     wrap_mm: float,
-    interference: float,
+    objective: Objective,
     most_cost: float,
 ) -> Edges:
     """Find all pairs of lines that a joint may join at some pressure.
 
     Parameters
     ----------
-    lines : Lines
+    lines : CandidateLines
     sense : float
         +1 for joints that bend toward the object.
     bends : sequence of Bends
         Of this sense, at all pressures.
     wrap_mm : float
         Least wrapped length between two windows: half of it on either side of a place.
-    interference : float, mm
+    objective : Objective
     most_cost : float, mm³
         Edges that alone cost more are left out.
     """
-    summed = summed_cost(lines, interference)
+    summed = summed_cost(lines, objective)
     start, end, turn = _turning(lines, sense, bends)
     before, after = _vertex(lines, start, end, sense * turn)
     least = np.where(start < lines.base, -_BACK_MM, 0.5 * wrap_mm)
@@ -123,14 +142,14 @@ def edges_of(
     straight = summed[start, low] - summed[start, first] + summed[end, last + 1] - summed[end, high]
     kept = np.flatnonzero(straight <= most_cost)
     kept = kept[np.argsort(end[kept], kind="stable")]
-    start, end, split, low, high = start[kept], end[kept], split[kept], low[kept], high[kept]
-    turn, before, after, straight = turn[kept], before[kept], after[kept], straight[kept]
-    near, at, weight = _near(lines, start, end, before, after, split, low, high, wide)
-    return Edges(sense, start, end, turn, before, after, straight, near, at, weight)
+    start, end, before, after = start[kept], end[kept], before[kept], after[kept]
+    pairs = _Pairs(start, end, before, after, split[kept], low[kept], high[kept])
+    near, at, weight = _near(lines, pairs, wide)
+    return Edges(sense, start, end, turn[kept], before, after, straight[kept], near, at, weight)
 
 
 def _turning(
-    lines: Lines, sense: float, bends: Sequence[Bends]
+    lines: CandidateLines, sense: float, bends: Sequence[Bends]
 ) -> tuple[IntArray, IntArray, FloatArray]:
     """Pairs of lines, one behind the other, whose headings differ by what a joint gives."""
     least = min((float(b.least.min()) for b in bends), default=np.inf)
@@ -142,7 +161,7 @@ def _turning(
 
 
 def _vertex(
-    lines: Lines, start: IntArray, end: IntArray, turn: FloatArray
+    lines: CandidateLines, start: IntArray, end: IntArray, turn: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Distance to the vertex from the place of the first line, and from it to the second's."""
     # The foot, on the second line, of the profile's point there, as the first line sees it.
@@ -154,37 +173,46 @@ def _vertex(
     return x - back * np.cos(turn), back - lines.along[end, place]
 
 
-def _near(
-    lines: Lines,
-    start: IntArray,
-    end: IntArray,
-    before: FloatArray,
-    after: FloatArray,
-    split: IntArray,
-    low: IntArray,
-    high: IntArray,
-    wide: int,
-) -> tuple[Float32, Float32, Float32]:
+def _near(lines: CandidateLines, pairs: _Pairs, wide: int) -> tuple[Float32, Float32, Float32]:
     """Points near the vertices, each as the line on its side of the vertex sees it."""
-    point = split[:, None] + np.arange(-wide, wide)
-    counted = (point >= low[:, None]) & (point < high[:, None])
+    point = pairs.split[:, None] + np.arange(-wide, wide)
+    counted = (point >= pairs.low[:, None]) & (point < pairs.high[:, None])
     point = np.clip(point, 0, len(lines.weight) - 1)
     out, along = lines.out.astype(np.float32), lines.along.astype(np.float32)
     side = [np.s_[:, :wide], np.s_[:, wide:]]
     near, at = np.empty(point.shape, np.float32), np.empty(point.shape, np.float32)
-    for line, here in ((start, side[0]), (end, side[1])):
+    for line, here in ((pairs.start, side[0]), (pairs.end, side[1])):
         near[here] = out[line[:, None], point[here]]
         at[here] = along[line[:, None], point[here]]
-    at[side[0]] -= before[:, None].astype(np.float32)
-    at[side[1]] = -(at[side[1]] + after[:, None].astype(np.float32))
+    at[side[0]] -= pairs.before[:, None].astype(np.float32)
+    at[side[1]] = -(at[side[1]] + pairs.after[:, None].astype(np.float32))
     weight = np.where(counted, lines.weight[point], 0.0).astype(np.float32)
     return near, at, weight
 
 
 def price(
-    edges: Edges, lines: Lines, bends: Bends, openF: FloatArray, wrap_mm: float, interference: float
+    edges: Edges,
+    lines: CandidateLines,
+    bends: Bends,
+    openF: FloatArray,
+    wrap_mm: float,
+    objective: Objective,
 ) -> Priced:
-    """Find the cheapest joint of every edge at the pressure of ``bends``."""
+    """Find the cheapest joint of every edge at one pressure.
+
+    Parameters
+    ----------
+    edges : Edges
+    lines : CandidateLines
+        Those of the edges.
+    bends : Bends
+        Of the edges' sense, at the pressure.
+    openF : (K,) array, mm
+        The cuts of ``bends``.
+    wrap_mm : float
+        Least wrapped length between two windows.
+    objective : Objective
+    """
     cost = np.full(len(edges.turn), np.inf)
     cut = np.zeros(len(edges.turn), dtype=np.intp)
     sense = np.float32(edges.sense)
@@ -207,11 +235,12 @@ def price(
         at = np.rint((edges.at[fits] + np.float32(bends.before)) * np.float32(1.0 / STEP_MM))
         index = np.clip(at, 0, places - 1).astype(np.int32) + angle[:, None] * places
         bulge = bends.bulge[k].ravel().take(index) * share[:, None].astype(np.float32)
-        slope = bends.slope[k].ravel().take(index)
-        depth = (edges.near[fits] + sense * bulge) * slope
-        near = np.einsum("ez,ez->e", depth_cost(depth, interference), edges.weight[fits])
+        # What lies off the line away from the object is at a negative distance of the tube.
+        slope = (-bends.slope[k]).ravel().take(index)
+        at_points = Deviation((edges.near[fits] + sense * bulge) * slope)
+        near = np.einsum("ez,ez->e", objective.density(at_points), edges.weight[fits])
         tube = edges.before[fits] + edges.after[fits] - 2.0 * reach + length
-        total = edges.straight[fits] + near + _LENGTH_WEIGHT * tube
+        total = edges.straight[fits] + near + LENGTH_COST_MM2 * tube
         better = total < cost[fits]
         cost[fits[better]] = total[better]
         cut[fits[better]] = k

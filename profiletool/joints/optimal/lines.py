@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from profiletool.joints.bounds import Limits
-from profiletool.records.frames import base_axes
+from profiletool.profile.curve import points_at
+from profiletool.records.frames import base_axes, direction, outward
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
 
@@ -33,7 +34,7 @@ _FREE_HEADINGS, _FREE_OFFSETS = 7, 5  # base lines where the base is free
 
 @dataclass(frozen=True)
 class Discretisation:
-    """How finely the choice of joints looks.
+    """Spacings of the grid that joints are chosen on.
 
     Attributes
     ----------
@@ -55,7 +56,7 @@ class Discretisation:
 
 
 @dataclass(frozen=True)
-class Lines:
+class CandidateLines:
     """All lines, and the profile's points as each of them sees them.
 
     Attributes
@@ -83,29 +84,36 @@ class Lines:
     base: int
 
 
-def lines_of(profile: Profile, limits: Limits, grid: Discretisation) -> Lines:
-    """Lay the lines of a discretisation on a profile."""
+def lines_of(profile: Profile, limits: Limits, grid: Discretisation) -> CandidateLines:
+    """Lay the lines of a discretisation on a profile.
+
+    Parameters
+    ----------
+    profile : Profile
+    limits : Limits
+        They say whether, and how far, the base may leave the profile's start tangent.
+    grid : Discretisation
+    """
     count = max(round(profile.length_mm / grid.step_mm), 2)
     step = profile.length_mm / count
     s = step * np.arange(count + 1 + int(_BEYOND_MM / step), dtype=float)
     points, turn = _extended(profile, s)
-    heading = float(profile.heading[0]) + profile.sign * turn
-    outward = profile.sign * np.column_stack([np.sin(heading), -np.cos(heading)])
+    away = outward(float(profile.heading[0]) + profile.sign * turn, profile.sign)
     weight = np.where(np.arange(len(s)) <= count, step, 0.0)
     weight[[0, count]] *= 0.5
 
     turns, offsets = _base_lines(limits)
-    _, away = base_axes(float(profile.heading[0]), profile.sign)
-    base_points = profile.points[0] + offsets[:, None] * away
+    _, base_away = base_axes(float(profile.heading[0]), profile.sign)
+    base_points = profile.points[0] + offsets[:, None] * base_away
     at, heading_turn, off = _fan(profile, s, turn, grid)
     place = np.concatenate([np.full(len(turns), -1), at])
     line_turn = np.concatenate([turns, heading_turn])
-    point = np.concatenate([base_points, points[at] + off[:, None] * outward[at]])
-    direction = float(profile.heading[0]) + profile.sign * line_turn
-    cos, sin = np.cos(direction)[:, None], np.sin(direction)[:, None]
+    point = np.concatenate([base_points, points[at] + off[:, None] * away[at]])
+    heading = float(profile.heading[0]) + profile.sign * line_turn
+    cos, sin = np.cos(heading)[:, None], np.sin(heading)[:, None]
     x, y = (points[None, :, k] - point[:, k, None] for k in (0, 1))
     along, out = cos * x + sin * y, profile.sign * (sin * x - cos * y)
-    return Lines(place, line_turn, point, along, out, weight, len(turns))
+    return CandidateLines(place, line_turn, point, along, out, weight, len(turns))
 
 
 def _fan(
@@ -139,9 +147,8 @@ def _extended(profile: Profile, s: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Points (M, 2) and turns (M,) of a profile that goes straight on behind its end."""
     turn = profile.sign * (np.interp(s, profile.s, profile.heading) - profile.heading[0])
     past = np.maximum(s - profile.length_mm, 0.0)[:, None]
-    end = profile.heading[-1]
-    points = np.column_stack([np.interp(s, profile.s, profile.points[:, k]) for k in (0, 1)])
-    return points + past * np.array([np.cos(end), np.sin(end)]), turn
+    points = points_at(s, profile.s, profile.points)
+    return points + past * direction(profile.heading[-1]), turn
 
 
 def _base_lines(limits: Limits) -> tuple[FloatArray, FloatArray]:

@@ -1,43 +1,39 @@
-"""Continuous least squares on everything about an actuator but its cuts' lengths and senses."""
+"""Polish of an actuator: least squares on all its numbers but the cuts' lengths and senses."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from profiletool.bending.model import Chain, Model
+from profiletool.bending.model import Model
 from profiletool.joints.bounds import Limits
+from profiletool.joints.closest import (
+    ClosestPoints,
+    closest_points,
+    distance_jacobian,
+    target_points,
+)
 from profiletool.joints.correction.parameters import (
-    Actuator,
     Parameters,
+    PosedChain,
     facing_motion,
     parameters_of,
 )
-from profiletool.joints.misfit import (
-    DEPTH_WEIGHT,
-    Feet,
-    depth_inside,
-    feet,
-    misfit,
-    residual_jacobian,
-    target_points,
-)
+from profiletool.joints.misfit import Deviation, depth_inside, misfit, objective_of
 from profiletool.joints.optimal.descent import descend
 from profiletool.records.design import Misfit
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
 
-_TOO_LONG = 1.0  # weight of a mm of tube beyond the longest, against one of gap
-_LENGTH = 0.01  # and of any other: of equal shapes the shortest
 _SPARE_MM = 20.0  # straight end that reaches past the profile's while the rest is moved
 _BOUND_SHARE = 1e-3  # of a range: so near is at the bound
 
 
 @dataclass(frozen=True)
 class Goal:
-    """What a polish aims at.
+    """Target and limits of a polish.
 
     Attributes
     ----------
@@ -62,7 +58,7 @@ class Polished:
     ``depth`` is how deep it lies in the object at most, mm.
     """
 
-    actuator: Actuator
+    posed: PosedChain
     shape: Shape
     misfit: Misfit
     depth: float
@@ -73,15 +69,14 @@ def goal_of(profile: Profile, limits: Limits, interference: float) -> Goal:
     return Goal(profile, target_points(profile), limits, interference)
 
 
-def polish(actuator: Actuator, model: Model, goal: Goal, runs: int = 12) -> Polished:
-    """Move alpha, wrapped lengths, pressure and base until the gaps are least.
+def polish(posed: PosedChain, model: Model, goal: Goal, runs: int = 12) -> Polished:
+    """Move alpha, wrapped lengths, pressure and base until the objective is least.
 
-    Deep places count more (`edges.DEPTH_WEIGHT`), and so does a tube that is too long. The
-    straight end is cut where the profile ends.
+    See `profiletool.joints.misfit.objective_of`. The straight end is cut where the profile ends.
 
     Parameters
     ----------
-    actuator : Actuator
+    posed : PosedChain
         Where to start.
     model : Model
     goal : Goal
@@ -89,49 +84,48 @@ def polish(actuator: Actuator, model: Model, goal: Goal, runs: int = 12) -> Poli
         Most evaluations of the shape and its derivatives.
     """
     profile = goal.profile
-    parameters = parameters_of(actuator.chain, profile, goal.limits)
+    parameters = parameters_of(posed.chain, profile, goal.limits)
     parameters = parameters.with_end(parameters.end_mm + _SPARE_MM)
     problem = _Problem(parameters, model, goal)
-    found = descend(
+    vector = descend(
         problem.residuals,
         problem.jacobian,
-        parameters.pack(actuator),
+        parameters.pack(posed),
         parameters.bounds(),
         parameters.scale(),
         runs,
     )
-    best = parameters.unpack(found)
+    best = parameters.unpack(vector)
     return judge(cut_end(best, model, goal), model, goal)
 
 
-def cut_end(actuator: Actuator, model: Model, goal: Goal) -> Actuator:
+def cut_end(posed: PosedChain, model: Model, goal: Goal) -> PosedChain:
     """End the tube where the profile ends, as far as the limits allow."""
-    chain, limits, sign = actuator.chain, goal.limits, goal.profile.sign
+    chain, limits, sign = posed.chain, goal.limits, goal.profile.sign
     edge = float(chain.centre[-1] + 0.5 * chain.openF[-1])
     longest = max(chain.length, edge + limits.end_mm + _SPARE_MM)
-    long = Chain(chain.centre, chain.openF, chain.alpha, chain.sense, longest)
-    shape = model.shape(long, actuator.pressure, actuator.pose, sign)
+    long = replace(chain, length=longest)
+    shape = model.shape(long, posed.pressure, posed.pose, sign)
     # Of the straight end only: the profile may come near the tube elsewhere.
     tip, before = shape.facing[-1], shape.facing[-2]
     along = (tip - before) / np.hypot(*(tip - before))
     reached = longest + float((goal.points[-1] - tip) @ along)
     length: float = max(min(reached, limits.max_length_mm), edge + limits.end_mm)
-    chain = Chain(chain.centre, chain.openF, chain.alpha, chain.sense, length)
-    return Actuator(chain, actuator.pressure, actuator.pose)
+    return replace(posed, chain=replace(chain, length=length))
 
 
-def judge(actuator: Actuator, model: Model, goal: Goal) -> Polished:
+def judge(posed: PosedChain, model: Model, goal: Goal) -> Polished:
     """Bend an actuator and measure it against the profile."""
-    shape = model.shape(actuator.chain, actuator.pressure, actuator.pose, goal.profile.sign)
+    shape = model.shape(posed.chain, posed.pressure, posed.pose, goal.profile.sign)
     fit = misfit(shape, goal.profile)
-    return Polished(actuator, shape, fit, depth_inside(shape, goal.profile))
+    return Polished(posed, shape, fit, depth_inside(shape, goal.profile))
 
 
-def at_bound(actuator: Actuator, limits: Limits) -> FloatArray:
-    """Tell where alpha ends at a bound: -1 at the least, +1 at the largest, 0 elsewhere; (n,)."""
+def at_bound(posed: PosedChain, limits: Limits) -> FloatArray:
+    """Signs of the bounds that alpha ends at: -1 the least, +1 the largest, 0 none; (n,)."""
     low, high = limits.alpha
     near = _BOUND_SHARE * (high - low)
-    alpha = actuator.chain.alpha
+    alpha = posed.chain.alpha
     return np.where(alpha >= high - near, 1.0, 0.0) - np.where(alpha <= low + near, 1.0, 0.0)
 
 
@@ -140,36 +134,35 @@ class _Problem:
 
     def __init__(self, parameters: Parameters, model: Model, goal: Goal) -> None:
         self._parameters, self._model, self._goal = parameters, model, goal
-        self._last: tuple[FloatArray, Shape, Feet] | None = None
+        self._objective = objective_of(goal.interference, goal.limits.max_length_mm)
+        self._last: tuple[FloatArray, Shape, ClosestPoints] | None = None
 
     def residuals(self, vector: FloatArray) -> FloatArray:
-        _, found = self._bent(vector)
-        deep = np.maximum(-found.gap - self._goal.interference, 0.0)
-        length = self._least_length(vector)
-        long = max(length - self._goal.limits.max_length_mm, 0.0)
-        return np.concatenate(
-            [found.gap, np.sqrt(DEPTH_WEIGHT) * deep, [_TOO_LONG * long, _LENGTH * length]]
-        )
+        _, closest = self._bent(vector)
+        at = Deviation(closest.distance, length=self._least_length(vector))
+        return self._objective.residuals(at)
 
     def jacobian(self, vector: FloatArray) -> FloatArray:
-        shape, found = self._bent(vector)
+        shape, closest = self._bent(vector)
         motion = facing_motion(self._parameters, self._model, vector, shape)
-        gap = residual_jacobian(found, motion)
-        deep = -np.sqrt(DEPTH_WEIGHT) * gap * (found.gap < -self._goal.interference)[:, None]
         n = self._parameters.joints
-        tube = np.zeros((2, len(vector)))
-        tube[1, n : 2 * n - 1] = _LENGTH
-        if self._least_length(vector) > self._goal.limits.max_length_mm:
-            tube[0, n : 2 * n - 1] = _TOO_LONG
-        return np.concatenate([gap, deep, tube])
+        longer = np.zeros(len(vector))
+        longer[n : 2 * n - 1] = 1.0  # by the wrapped lengths
+        at = Deviation(
+            closest.distance,
+            distance_jacobian(closest, motion),
+            self._least_length(vector),
+            longer,
+        )
+        return self._objective.jacobian(at)
 
-    def _bent(self, vector: FloatArray) -> tuple[Shape, Feet]:
+    def _bent(self, vector: FloatArray) -> tuple[Shape, ClosestPoints]:
         if self._last is None or not np.array_equal(self._last[0], vector):
             at = self._parameters.unpack(vector)
             sign = self._parameters.sign
             shape = self._model.shape(at.chain, at.pressure, at.pose, sign)
-            found = feet(shape.facing, self._goal.points, sign)
-            self._last = (vector.copy(), shape, found)
+            closest = closest_points(shape.facing, self._goal.points, sign)
+            self._last = (vector.copy(), shape, closest)
         return self._last[1], self._last[2]
 
     def _least_length(self, vector: FloatArray) -> float:

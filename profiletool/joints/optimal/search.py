@@ -10,12 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from profiletool.bending.model import Chain, Model
+from profiletool.bending.model import Chain, Model, centers_of
 from profiletool.joints.bounds import Limits
-from profiletool.joints.correction.parameters import Actuator
+from profiletool.joints.correction.parameters import PosedChain
+from profiletool.joints.misfit import Objective, objective_of
 from profiletool.joints.optimal.bends import Bends, tabulate
 from profiletool.joints.optimal.edges import Edges, Priced, edges_of, price, summed_cost
-from profiletool.joints.optimal.lines import Discretisation, IntArray, Lines, lines_of
+from profiletool.joints.optimal.lines import CandidateLines, Discretisation, IntArray, lines_of
 from profiletool.records.frames import Pose, base_axes
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
@@ -27,7 +28,7 @@ _WIDENED = 3
 
 
 @dataclass(frozen=True)
-class Step:
+class PathJoint:
     """One joint of a path: the lines before and behind it."""
 
     sense: float
@@ -40,8 +41,8 @@ class Step:
 
 
 @dataclass(frozen=True)
-class Found:
-    """The least cost for every number of joints at every pressure, and what it takes to walk back.
+class SearchResult:
+    """The least cost for every number of joints at every pressure, and the way back along paths.
 
     Attributes
     ----------
@@ -53,7 +54,7 @@ class Found:
         Costs below it are those of the optimum.
     """
 
-    lines: Lines
+    lines: CandidateLines
     senses: tuple[Edges, ...]
     pressure: FloatArray
     openF: FloatArray
@@ -62,13 +63,13 @@ class Found:
     totals: tuple[FloatArray, ...]
     cost: FloatArray
     most_cost: float
-    interference: float
+    objective: Objective
 
-    def path(self, pressure: int, joints: int) -> tuple[Step, ...]:
+    def path(self, pressure: int, joints: int) -> tuple[PathJoint, ...]:
         """Walk back the best path of so many joints at a pressure (an index)."""
         totals, priced = self.totals[pressure], self.priced[pressure]
-        line = int(np.argmin(totals[joints] + _tails(self.lines, self.interference)))
-        steps: list[Step] = []
+        line = int(np.argmin(totals[joints] + _tails(self.lines, self.objective)))
+        steps: list[PathJoint] = []
         for n in range(joints, 0, -1):
             best, step = np.inf, None
             for edges, prices in zip(self.senses, priced, strict=True):
@@ -76,7 +77,7 @@ class Found:
                 total = totals[n - 1][edges.start[low:high]] + prices.cost[low:high]
                 if high > low and total.min() < best:
                     best, e = float(total.min()), low + int(np.argmin(total))
-                    step = Step(
+                    step = PathJoint(
                         edges.sense,
                         int(edges.start[e]),
                         line,
@@ -90,9 +91,9 @@ class Found:
             line = step.start
         return tuple(steps[::-1])
 
-    def actuator(
+    def posed_chain(
         self, pressure: int, joints: int, model: Model, profile: Profile, limits: Limits
-    ) -> Actuator:
+    ) -> PosedChain:
         """Give the actuator of the best path; its end reaches as far as the profile's."""
         steps = self.path(pressure, joints)
         sense, turn, openF, before, after = (
@@ -121,7 +122,7 @@ class Found:
         along, _ = base_axes(heading, profile.sign)
         x, y = lines.point[steps[0].start] + (place - root) * along
         pose = Pose(float(x), float(y), float(np.degrees(heading)))
-        return Actuator(Chain(centre, openF, alpha, sense, length), P, pose)
+        return PosedChain(Chain(centre, openF, alpha, centers_of(sense), length), P, pose)
 
 
 def search(
@@ -132,7 +133,7 @@ def search(
     interference: float,
     grid: Discretisation,
     most_joints: int,
-) -> Found:
+) -> SearchResult:
     """Find the least cost for 1 to ``most_joints`` joints at every pressure of a grid.
 
     Parameters
@@ -147,29 +148,29 @@ def search(
     grid : Discretisation
     most_joints : int
     """
-    lines = lines_of(profile, limits, grid)
+    lines, objective = lines_of(profile, limits, grid), objective_of(interference)
     pressure = _pressures(limits, grid)
     bends = [[tabulate(model, float(P), openF, sense) for sense in (1.0, -1.0)] for P in pressure]
     most = _FIRST_MOST_MM**2 * profile.length_mm
     for attempt in range(_WIDENED):
         senses = [
-            edges_of(lines, sense, [of[k] for of in bends], limits.wrap_mm, interference, most)
+            edges_of(lines, sense, [of[k] for of in bends], limits.wrap_mm, objective, most)
             for k, sense in enumerate((1.0, -1.0))
         ]
         priced, totals = [], []
         for of in bends:
             prices = [
-                price(edges, lines, table, openF, limits.wrap_mm, interference)
+                price(edges, lines, table, openF, limits.wrap_mm, objective)
                 for edges, table in zip(senses, of, strict=True)
             ]
             priced.append(tuple(prices))
             totals.append(_totals(lines, senses, prices, most_joints))
-        tail = _tails(lines, interference)
+        tail = _tails(lines, objective)
         cost = np.array([(total[1:] + tail).min(axis=1) for total in totals])
         if cost.min() <= most or attempt == _WIDENED - 1:
             break
         most *= _WIDEN
-    return Found(
+    return SearchResult(
         lines,
         tuple(senses),
         pressure,
@@ -179,7 +180,7 @@ def search(
         tuple(totals),
         cost,
         most,
-        interference,
+        objective,
     )
 
 
@@ -191,14 +192,14 @@ def _pressures(limits: Limits, grid: Discretisation) -> FloatArray:
     return high - grid.pressure_step * np.arange(count, dtype=float)[::-1]
 
 
-def _tails(lines: Lines, interference: float) -> FloatArray:
+def _tails(lines: CandidateLines, objective: Objective) -> FloatArray:
     """Cost of going straight on from every line's place: (N,)."""
-    summed = summed_cost(lines, interference)
+    summed = summed_cost(lines, objective)
     return summed[:, -1] - summed[np.arange(len(lines.place)), lines.place + 1]
 
 
 def _totals(
-    lines: Lines, senses: list[Edges], prices: list[Priced], most_joints: int
+    lines: CandidateLines, senses: list[Edges], prices: list[Priced], most_joints: int
 ) -> FloatArray:
     """Least cost of reaching every line with 0 to ``most_joints`` joints: (J + 1, N)."""
     count = len(lines.place)

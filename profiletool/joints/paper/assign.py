@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -11,41 +11,21 @@ import numpy as np
 from formula.errors import OutOfRange
 from formula.table import PRESSURES_BAR, Table, assign, make_table
 from formula.theta import Formula
-from profiletool.bending.kinematics import Bend, facing_stretch
+from profiletool.bending.kinematics import facing_stretch
 from profiletool.joints.bounds import END_WRAP_MM, wrap_mm
+from profiletool.joints.layout import Layout
 from profiletool.joints.paper.pieces import Rules
-from profiletool.joints.paper.sectors import Sector
+from profiletool.joints.paper.sectors import BendingSector
+from profiletool.profile.curve import points_at
 from profiletool.profile.offset import offset_points
 from profiletool.records.design import AWAY_DEG, TOWARD_DEG, Joint
-from profiletool.records.frames import Pose
+from profiletool.records.frames import Pose, direction
 from profiletool.records.profile import Profile
 from profiletool.records.request import INTERFERENCE_MM, TubeSpec
 from profiletool.records.units import FloatArray
 
 NEAR_DEG = 2.0  # an angle of the table this much above the wanted one is near enough
 _F_DECIMALS = 1
-
-
-@dataclass(frozen=True)
-class Layout:
-    """The joints of an actuator, where it starts and what it works at."""
-
-    joints: tuple[Joint, ...]
-    root_mm: float
-    length_mm: float
-    pressure_bar: float
-    pose: Pose
-
-    def bends(self) -> tuple[Bend, ...]:
-        """Give the joints as the kinematics sees them, bent by the formula's angles."""
-        return tuple(
-            Bend(
-                joint.centre_mm,
-                joint.openF_mm,
-                joint.sense * np.radians(joint.theta_formula_deg),
-            )
-            for joint in self.joints
-        )
 
 
 def theta_table(formula: Formula, material: TubeSpec) -> Table:
@@ -73,7 +53,15 @@ def theta_table(formula: Formula, material: TubeSpec) -> Table:
 
 
 def joint_rules(table: Table, material: TubeSpec, tolerance_mm: float) -> Rules:
-    """Say what a joint can do by the table."""
+    """Rules for joints by the table.
+
+    Parameters
+    ----------
+    table : Table
+    material : TubeSpec
+    tolerance_mm : float
+        How far the polygon may lie off the profile.
+    """
     return Rules(
         radius_mm=material.radius_mm,
         openF_mm=np.array(table.openF_mm),
@@ -85,12 +73,24 @@ def joint_rules(table: Table, material: TubeSpec, tolerance_mm: float) -> Rules:
 
 
 def lay_out(
-    profile: Profile, sectors: Sequence[Sector], table: Table, material: TubeSpec
+    profile: Profile, sectors: Sequence[BendingSector], table: Table, material: TubeSpec
 ) -> Layout:
     """Measure the sectors and look the angles up.
 
     A turn that no joint reaches is cut back to what one does, so that the best attempt can be
     drawn; the sectors keep what is missing.
+
+    Parameters
+    ----------
+    profile : Profile
+    sectors : sequence of BendingSector, in order along the profile
+    table : Table
+    material : TubeSpec
+
+    Raises
+    ------
+    formula.errors.OutOfRange
+        When no pressure of the table serves all joints.
     """
     openF = [sector.openF_mm for sector in sectors]
     most = table.theta_deg.max(axis=(0, 2))[np.searchsorted(table.openF_mm, openF)]
@@ -138,7 +138,9 @@ def _nearest_cuts(table: Table, openF: Sequence[float], wanted: Sequence[float])
     return cuts
 
 
-def _phalanges(profile: Profile, sectors: Sequence[Sector], material: TubeSpec) -> FloatArray:
+def _phalanges(
+    profile: Profile, sectors: Sequence[BendingSector], material: TubeSpec
+) -> FloatArray:
     """F of every joint by eq. (10), NS measured between points of the axis curve: (n,).
 
     Straight, as in the paper: "between the intersection points of the curved axis with the
@@ -153,8 +155,8 @@ def _phalanges(profile: Profile, sectors: Sequence[Sector], material: TubeSpec) 
     def wrapped(start: float, end: float, least: float) -> float:
         if end <= start:
             return least
-        x, y = (np.interp([start, end], profile.s, axis[:, k]) for k in (0, 1))
-        return max(float(np.hypot(x[1] - x[0], y[1] - y[0])), least)
+        here, there = points_at(np.array([start, end]), profile.s, axis)
+        return max(float(np.hypot(*(there - here))), least)
 
     NS = [
         wrapped(a.centre + ends[k], b.centre - ends[k + 1], wrap_mm(material))
@@ -166,19 +168,19 @@ def _phalanges(profile: Profile, sectors: Sequence[Sector], material: TubeSpec) 
     return F
 
 
-def _covered(sector: Sector, radius_mm: float) -> float:
+def _covered(sector: BendingSector, radius_mm: float) -> float:
     opening = float(facing_stretch(sector.turn_rad, radius_mm))
     return sector.openF_mm + max(opening, 0.0)
 
 
-def _base(profile: Profile, first: Sector, material: TubeSpec) -> tuple[float, Pose]:
+def _base(profile: Profile, first: BendingSector, material: TubeSpec) -> tuple[float, Pose]:
     """Root length and pose: straight along the first line, so that joint 1 lies on its vertex.
 
     The root is as long as asked, longer only where the profile starts with a longer straight or
     the first cut needs the room.
     """
     heading = float(profile.heading[0])
-    along = np.array([np.cos(heading), np.sin(heading)])
+    along = direction(heading)
     lead = float((np.array(first.vertex) - profile.points[0]) @ along)
     room = 0.5 * first.openF_mm + wrap_mm(material)
     root = round(max(material.root_mm, lead, room), _F_DECIMALS)

@@ -1,4 +1,4 @@
-"""Candidate joints: what lies between one break point of a profile and every later one.
+"""Candidate joints of the paper's method: one between every two break points of a profile.
 
 Glossary
 --------
@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from profiletool.bending.kinematics import facing_stretch
+from profiletool.records.frames import cross, direction
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
 
@@ -28,7 +29,7 @@ _PER_MM = 10.0  # cost of length that is missing for a cut
 
 @dataclass(frozen=True)
 class Rules:
-    """What a joint can do.
+    """Rules that a joint keeps to.
 
     Attributes
     ----------
@@ -77,16 +78,6 @@ class Pieces:
             + _PER_MM * self.missing_mm
             + _BLOCKED_MM * self.blocked
         )
-
-
-def direction(heading: float | FloatArray) -> FloatArray:
-    """Give unit vectors of headings in rad: (...) -> (..., 2)."""
-    return np.stack([np.cos(heading), np.sin(heading)], axis=-1)
-
-
-def cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Give the cross product in the plane, positive where b points left of a: (..., 2) -> (...)."""
-    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
 
 
 def pieces_from(profile: Profile, grid: IntArray, i: int, rules: Rules) -> Pieces:
@@ -151,7 +142,7 @@ def _cuts(measured: FloatArray, bend: FloatArray, rules: Rules) -> tuple[FloatAr
 def _vertices(
     profile: Profile, here: int, later: IntArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Where the line at ``here`` meets the later ones: (J, 2); distances along both lines to it."""
+    """Points where the line at ``here`` meets later ones, (J, 2); distances along both, (J,)."""
     along = direction(profile.heading[here])
     other = direction(profile.heading[later])
     across = profile.points[later] - profile.points[here]
@@ -166,7 +157,7 @@ def _vertices(
 def _deviation(
     profile: Profile, indices: IntArray, vertex: FloatArray, radius: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """How far the polygons from indices[0] on lie off the profile, and inside the object: (J,).
+    """Distances of the polygons from indices[0] on off the profile, and inside the object: (J,).
 
     Toward the object the polygon has a vertex. Away from it the hinge is on the far side and the
     object-facing line runs through the joint as an arc, of the given radius.
@@ -192,6 +183,6 @@ def _deviation(
     outward, inward = (
         np.max(off, axis=1, where=within, initial=0.0) for off in (outside, -outside)
     )
-    gap = np.min(np.hypot(away[..., 0], away[..., 1]), axis=1, where=within, initial=np.inf)
-    outward = np.maximum(outward, np.where(radius > 0.0, 0.0, gap))
+    distance = np.min(np.hypot(away[..., 0], away[..., 1]), axis=1, where=within, initial=np.inf)
+    outward = np.maximum(outward, np.where(radius > 0.0, 0.0, distance))
     return np.maximum(outward, inward), inward

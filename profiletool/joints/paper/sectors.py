@@ -20,7 +20,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from profiletool.joints.paper.pieces import IntArray, Pieces, Rules, cross, direction, pieces_from
+from profiletool.joints.paper.pieces import IntArray, Pieces, Rules, pieces_from
+from profiletool.records.frames import cross, direction
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
 
@@ -33,7 +34,7 @@ _FAINT = 1e-6  # weight of what lies within the tolerance against what lies beyo
 
 
 @dataclass(frozen=True)
-class Sector:
+class BendingSector:
     """A bending sector and the stretch of profile that it stands for.
 
     Attributes
@@ -68,7 +69,9 @@ class Sector:
     blocked: bool
 
 
-def discretise(profile: Profile, rules: Rules, count: int | None = None) -> tuple[Sector, ...]:
+def discretise(
+    profile: Profile, rules: Rules, count: int | None = None
+) -> tuple[BendingSector, ...]:
     """Choose the fewest joints whose polygon stays within the tolerance.
 
     Of equally many the polygon with the least sum of squared deviations is taken. Where no
@@ -84,7 +87,7 @@ def discretise(profile: Profile, rules: Rules, count: int | None = None) -> tupl
 
     Returns
     -------
-    tuple of Sector, in order along the profile; empty where the profile is straight
+    tuple of BendingSector, in order along the profile; empty where the profile is straight
     """
     grid = _grid(profile, _GRID_SHARE * rules.radius_mm)
     pieces = [pieces_from(profile, grid, i, rules) for i in range(len(grid) - 1)]
@@ -140,9 +143,9 @@ def _best_path(cost: FloatArray, tolerance: float, count: int | None) -> list[in
     return path[::-1]
 
 
-def _sector(profile: Profile, grid: IntArray, piece: Pieces, i: int, j: int) -> Sector:
+def _sector(profile: Profile, grid: IntArray, piece: Pieces, i: int, j: int) -> BendingSector:
     k = j - i - 1
-    return Sector(
+    return BendingSector(
         start=float(profile.s[grid[i]]),
         centre=float(piece.centre[k]),
         end=float(profile.s[grid[j]]),

@@ -9,17 +9,17 @@ from hypothesis import strategies as st
 
 from formula.files import load_formula
 from profiletool.bending.constant_curvature import FormulaModel
+from profiletool.bending.model import centers_of
 from profiletool.joints.bounds import Limits
+from profiletool.joints.closest import closest_points, distance_jacobian
 from profiletool.joints.correction.parameters import Parameters, facing_motion
-from profiletool.joints.misfit import feet, residual_jacobian, target_points
-from profiletool.profile.target import Reach, profile_of_line
 from profiletool.records.units import FloatArray
 
 MODEL = FormulaModel(load_formula(), 10.0)
 LIMITS = Limits(MODEL.alpha, (0.02, 0.2), 2.0, 4.0, 10.0, 250.0)
 PARAMETERS = Parameters(
     openF=np.array([8.0, 10.0, 6.0]),
-    sense=np.array([1.0, 1.0, -1.0]),
+    alpha_center=centers_of(np.array([1.0, 1.0, -1.0])),
     end_mm=20.0,
     start=(3.0, -2.0),
     heading=2.5,
@@ -71,16 +71,6 @@ def test_bounds_hold_the_limits() -> None:
     assert (low[-2:].tolist(), high[-2:].tolist()) == ([-0.2, -3.0], [0.2, 3.0])
 
 
-def test_feet_of_a_straight_line() -> None:
-    line = np.column_stack([np.linspace(0.0, 10.0, 11), np.zeros(11)])
-    points = np.array([[2.25, 1.0], [3.0, -0.5], [4.4, 0.0], [13.0, 4.0], [-3.0, -4.0]])
-    found = feet(line, points, 1.0)  # the object to the left, above the line
-    assert found.gap == pytest.approx([1.0, -0.5, 0.0, 5.0, 5.0])
-    assert found.at(line)[:, 0] == pytest.approx([2.25, 3.0, 4.4, 10.0, 0.0])
-    assert found.normal[:3] == pytest.approx(np.array([[0.0, -1.0]] * 3))
-    assert feet(line, points, -1.0).gap[:2] == pytest.approx([-1.0, 0.5])
-
-
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_the_jacobian_of_the_residuals_against_differences(sign: float) -> None:
     parameters = freed(sign)
@@ -91,18 +81,13 @@ def test_the_jacobian_of_the_residuals_against_differences(sign: float) -> None:
     at = parameters.unpack(vector)
     shape = MODEL.shape(at.chain, at.pressure, at.pose, sign)
     motion = facing_motion(parameters, MODEL, vector, shape)
-    jacobian = residual_jacobian(feet(line, points, sign), motion)
+    jacobian = distance_jacobian(closest_points(line, points, sign), motion)
     for k, scale in enumerate(parameters.scale()):
         step = np.zeros(parameters.size)
         step[k] = 0.01 * scale
-        ahead, behind = (feet(facing(parameters, vector + s), points, sign) for s in (step, -step))
-        slope = (ahead.gap - behind.gap) / (2.0 * step[k])
+        ahead, behind = (
+            closest_points(facing(parameters, vector + s), points, sign) for s in (step, -step)
+        )
+        slope = (ahead.distance - behind.distance) / (2.0 * step[k])
         assert np.median(np.abs(jacobian[:, k] - slope)) * scale < 2e-3
         assert np.abs(jacobian[:, k] - slope).max() * scale < 0.05
-
-
-def test_target_points_keep_both_ends() -> None:
-    profile = profile_of_line(np.array([[0.0, 0.0], [0.0, -60.0]]), Reach("left", 10.0))
-    points = target_points(profile)
-    assert points[[0, -1]] == pytest.approx(profile.points[[0, -1]])
-    assert len(points) == round(profile.length_mm / 0.5) + 1

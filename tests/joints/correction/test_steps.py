@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from profiletool.joints.correction.steps import Linear, built_step, free_step
-from profiletool.joints.misfit import badness
+from profiletool.joints.misfit import Deviation, objective_of
 from profiletool.records.units import FloatArray
 
 ANY = 1e9  # mm: as deep in the object as it likes
@@ -19,24 +19,28 @@ FREE, BUILT = 0.1, 0.05  # damping, mm
 
 
 def linear(seed: int, size: int = 4, count: int = 60, **changes: object) -> Linear:
-    """Gaps that a vector far from its bounds could close to some part."""
+    """Distances that a vector far from its bounds could close to some part."""
     rng = np.random.default_rng(seed)
     scale = rng.uniform(0.02, 2.0, size)
     common = rng.normal(size=(count, 1))  # columns that are alike, as those of neighbours are
     jacobian = (rng.normal(size=(count, size)) + common) / scale
     vector = rng.uniform(5.0, 20.0, size)
-    gap = jacobian @ (rng.uniform(-1.5, 1.5, size) * scale) + rng.normal(0.0, 0.2, count)
+    distance = jacobian @ (rng.uniform(-1.5, 1.5, size) * scale) + rng.normal(0.0, 0.2, count)
     fields: dict[str, object] = {
-        "gap": gap, "jacobian": jacobian, "vector": vector, "low": np.full(size, -np.inf),
-        "high": np.full(size, np.inf), "scale": scale, "interference_mm": ANY,
+        "distance": distance, "jacobian": jacobian, "vector": vector, "low": np.full(size, -np.inf),
+        "high": np.full(size, np.inf), "scale": scale, "objective": objective_of(ANY),
         "centre": vector + rng.uniform(-0.3, 0.3, size) * scale,
     }  # fmt: skip
     return Linear(**{**fields, **changes})  # type: ignore[arg-type]
 
 
+def cost(model: Linear, distance: FloatArray) -> float:
+    return float(model.objective.cost(Deviation(distance)))
+
+
 def objective(model: Linear, vector: FloatArray, damping: float) -> float:
     far = damping * (vector - model.centre) / model.scale
-    return float(badness(model.predicted(vector), model.interference_mm) + far @ far)
+    return cost(model, model.predicted(vector)) + float(far @ far)
 
 
 def test_where_nothing_binds_it_is_damped_least_squares() -> None:
@@ -44,7 +48,7 @@ def test_where_nothing_binds_it_is_damped_least_squares() -> None:
     A = model.jacobian * model.scale
     normal = A.T @ A + FREE**2 * len(A) * np.eye(4)
     pull = FREE**2 * len(A) * (model.vector - model.centre) / model.scale
-    expected = model.vector - np.linalg.solve(normal, A.T @ model.gap + pull) * model.scale
+    expected = model.vector - np.linalg.solve(normal, A.T @ model.distance + pull) * model.scale
     assert free_step(model, np.full(4, np.inf)) == pytest.approx(expected, rel=1e-9)
 
 
@@ -68,7 +72,7 @@ def test_bounds_reach_and_held_numbers(
     rng = np.random.default_rng(seed)
     model = linear(seed)
     low, high = (model.centre + s * rng.uniform(0.1, 3.0, 4) * model.scale for s in (-1.0, 1.0))
-    model = linear(seed, low=low, high=high, interference_mm=depth)
+    model = linear(seed, low=low, high=high, objective=objective_of(depth))
     reach, kept = share * model.scale, np.array(held)
     at = model.vector + rng.uniform(-0.1, 0.1, 4) * model.scale
     found = free_step(model, reach, kept, at)
@@ -95,15 +99,15 @@ def test_depth_pulls_out_of_the_object() -> None:
     # Ten points on a line that shifts: half of them 1 mm out, half 1 mm in.
     one = np.ones(10)
     model = Linear(
-        gap=np.repeat([1.0, -1.0], 5), jacobian=one[:, None], vector=np.zeros(1),
+        distance=np.repeat([1.0, -1.0], 5), jacobian=one[:, None], vector=np.zeros(1),
         centre=np.zeros(1), low=np.full(1, -9.0), high=np.full(1, 9.0), scale=np.ones(1),
-        interference_mm=ANY,
+        objective=objective_of(ANY),
     )  # fmt: skip
     assert free_step(model, np.full(1, 5.0)) == pytest.approx([0.0], abs=1e-9)
-    strict = replace(model, interference_mm=0.3)
+    strict = replace(model, objective=objective_of(0.3))
     # d/dt of (1 + t)^2 + (t - 1)^2 + 4 (t - 0.7)^2 + 2 (0.1 t)^2
     assert free_step(strict, np.full(1, 5.0)) == pytest.approx([2.8 / 6.02], rel=1e-6)
-    assert badness(np.array([-0.5, 0.1]), 0.3) == pytest.approx((0.26 + 4.0 * 0.04) / 2.0)
+    assert cost(strict, np.array([-0.5, 0.1])) == pytest.approx((0.26 + 4.0 * 0.04) / 2.0)
 
 
 def steps_of(model: Linear, free: int = 1) -> FloatArray:
@@ -114,13 +118,13 @@ def steps_of(model: Linear, free: int = 1) -> FloatArray:
 
 
 def refitted(model: Linear, vector: FloatArray, step: FloatArray) -> float:
-    """Worth of the numbers that have steps, with the others where they are best."""
+    """Cost of the numbers that have steps, with the others where they are best."""
     discrete = step > 0.0
-    gap = model.predicted(vector)
+    distance = model.predicted(vector)
     rest = model.jacobian[:, ~discrete]
-    gap = gap - rest @ np.linalg.lstsq(rest, gap, rcond=None)[0]
+    distance = distance - rest @ np.linalg.lstsq(rest, distance, rcond=None)[0]
     far = (BUILT * (vector - model.centre) / model.scale)[discrete]
-    return float(badness(gap, model.interference_mm) + far @ far)
+    return cost(model, distance) + float(far @ far)
 
 
 @pytest.mark.parametrize("seed", range(12))

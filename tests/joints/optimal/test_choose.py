@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 
 from formula.files import load_formula
 from profiletool.bending.constant_curvature import FormulaModel
-from profiletool.bending.model import Chain
+from profiletool.bending.model import Chain, centers_of
 from profiletool.errors import NoObject
 from profiletool.joints.bounds import cuts_of, limits_of
 from profiletool.joints.misfit import misfit
 from profiletool.joints.optimal.bends import tabulate
-from profiletool.joints.optimal.choose import Choice, Wish, choose
+from profiletool.joints.optimal.choose import Choice, ChoiceOptions, choose
 from profiletool.joints.optimal.lines import Discretisation
 from profiletool.joints.optimal.search import search
 from profiletool.profile.target import Reach, profile_of_line
@@ -69,7 +69,7 @@ def test_a_path_costs_what_its_actuator_misses() -> None:
     found = search(BOWL, MODEL, CUTS, LIMITS, 0.3, grid, 4)
     joints = 3
     pressure = int(np.argmin(found.cost[:, joints - 1]))
-    at = found.actuator(pressure, joints, MODEL, BOWL, LIMITS)
+    at = found.posed_chain(pressure, joints, MODEL, BOWL, LIMITS)
     shape = MODEL.shape(at.chain, at.pressure, at.pose, BOWL.sign)
     predicted = np.sqrt(found.cost[pressure, joints - 1] / BOWL.length_mm)
     assert misfit(shape, BOWL).rms_mm == pytest.approx(predicted, abs=0.05)
@@ -108,7 +108,7 @@ def test_a_bowl_is_followed_within_the_limits_and_the_same_every_time() -> None:
 
 @pytest.mark.parametrize("count", [2, 5])
 def test_a_wished_number_of_joints_is_honoured(count: int) -> None:
-    choice = choose(BOWL, MODEL, MATERIAL, Wish(count=count))
+    choice = choose(BOWL, MODEL, MATERIAL, ChoiceOptions(count=count))
     within_limits(choice)
     assert len(choice.chain.openF) == count
     assert choice.trade_off.rms_mm.shape[1] == count
@@ -116,7 +116,9 @@ def test_a_wished_number_of_joints_is_honoured(count: int) -> None:
 
 
 def test_fewer_joints_do_for_a_looser_tolerance() -> None:
-    tight, loose = (choose(BOWL, MODEL, MATERIAL, Wish(tolerance_mm=t)) for t in (0.05, 2.0))
+    tight, loose = (
+        choose(BOWL, MODEL, MATERIAL, ChoiceOptions(tolerance_mm=t)) for t in (0.05, 2.0)
+    )
     assert len(loose.chain.openF) < len(tight.chain.openF)
 
 
@@ -131,7 +133,7 @@ def test_less_pressure_takes_no_more_than_is_allowed() -> None:
 def test_a_free_base_is_no_worse() -> None:
     hollow = bent_line((12.0, -14.0), (50.0, 80.0), (25.0, 0.0))
     fixed, free = (
-        choose(hollow, MODEL, MATERIAL, Wish(count=3, base_free=f)) for f in (False, True)
+        choose(hollow, MODEL, MATERIAL, ChoiceOptions(count=3, base_free=f)) for f in (False, True)
     )
     assert free.misfit.rms_mm <= fixed.misfit.rms_mm + 1e-3
     assert free.limits.base_free
@@ -143,7 +145,9 @@ def actuators() -> st.SearchStrategy[Chain]:
     def chain(joints: list[tuple[float, float, float, float]]) -> Chain:
         openF, alpha, sense, wrapped = (np.array(v) for v in zip(*joints, strict=True))
         edge = 6.0 + np.cumsum(wrapped + openF)
-        return Chain(edge - 0.5 * openF, openF, np.radians(alpha), sense, float(edge[-1]) + 15.0)
+        return Chain(
+            edge - 0.5 * openF, openF, np.radians(alpha), centers_of(sense), float(edge[-1]) + 15.0
+        )
 
     joint = st.tuples(
         st.sampled_from(CUTS.tolist()),

@@ -9,7 +9,7 @@ from formula.files import load_formula
 from formula.table import assign
 from profiletool.joints.bounds import END_WRAP_MM, WRAP_MM
 from profiletool.joints.paper.assign import joint_rules, lay_out, theta_table
-from profiletool.joints.paper.sectors import Sector, discretise
+from profiletool.joints.paper.sectors import BendingSector, discretise
 from profiletool.profile.target import Reach, profile_of_line, profile_of_object
 from profiletool.records.design import AWAY_DEG, TOWARD_DEG
 from profiletool.records.profile import Profile
@@ -22,8 +22,12 @@ T = np.linspace(0.0, 2.0 * np.pi, 2881)[:-1]
 CIRCLE = 30.0 * np.column_stack([np.cos(T), np.sin(T)])
 
 
-def sector(centre: float, turn_deg: float, openF: float, vertex: tuple[float, float]) -> Sector:
-    return Sector(0.0, centre, 0.0, vertex, np.radians(turn_deg), openF, 0.0, 0.0, 0.0, 0.0, False)
+def sector(
+    centre: float, turn_deg: float, openF: float, vertex: tuple[float, float]
+) -> BendingSector:
+    return BendingSector(
+        0.0, centre, 0.0, vertex, np.radians(turn_deg), openF, 0.0, 0.0, 0.0, 0.0, False
+    )
 
 
 @pytest.fixture(scope="module")

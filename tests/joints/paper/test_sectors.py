@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from profiletool.joints.paper.pieces import Rules
-from profiletool.joints.paper.sectors import Sector, discretise
+from profiletool.joints.paper.sectors import BendingSector, discretise
 from profiletool.profile.target import Reach, profile_of_line, profile_of_object
 from profiletool.records.profile import Profile
 
@@ -97,7 +97,7 @@ def test_a_sharp_corner_is_the_best_attempt_and_says_so() -> None:
     assert any(s.excess_turn_rad > 0 or s.missing_mm > 0 or s.deviation_mm > 1.0 for s in sectors)
 
 
-def geometry(sectors: tuple[Sector, ...]) -> np.ndarray:
+def geometry(sectors: tuple[BendingSector, ...]) -> np.ndarray:
     return np.array([(s.centre, s.turn_rad, s.openF_mm, s.deviation_mm) for s in sectors])
 
 

@@ -11,22 +11,23 @@ import pytest
 from fem.equilibrium import Critical
 from fem.errors import BadGeometry, NotConverged
 from fem.solution import Solution
+from profiletool.bending.model import centers_of
 from profiletool.bending.response import Response
 from profiletool.joints.bounds import Limits
-from profiletool.joints.correction.correct import CannotBend, Steps, Trial, correct
+from profiletool.joints.closest import closest_points, distance_jacobian
+from profiletool.joints.correction.correct import CannotBend, Iterate, StepSizes, correct
 from profiletool.joints.correction.parameters import Parameters
-from profiletool.joints.misfit import feet, residual_jacobian
 from profiletool.profile.curve import arc_length
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
 from profiletool.records.request import TubeSpec
 from profiletool.records.units import FloatArray
-from profiletool.verify.bench import FeBench
+from profiletool.verify.forward import FeForwardModel
 
 LIMITS = Limits((1.2, 3.0), (0.02, 0.2), 2.0, 4.0, 10.0, 250.0, 0.2, 3.0)
 NUMBERS = Parameters(
     openF=np.array([8.0, 6.0]),
-    sense=np.array([1.0, -1.0]),
+    alpha_center=centers_of(np.array([1.0, -1.0])),
     end_mm=6.0,
     start=(3.0, -2.0),
     heading=2.5,
@@ -41,14 +42,16 @@ NAMES = ("alpha 1", "alpha 2", "wrapped", "place", "pressure", "turn", "offset")
 MISSED = (0.01, 0.03, 0.12, 0.07, 0.01, 0.001, 0.001)
 
 
-def trial_at(vector: FloatArray, bench: FeBench, near: Trial[Solution] | None) -> Trial[Solution]:
-    shape, state = bench.bend(NUMBERS.unpack(vector), NUMBERS.sign, near)
-    return Trial(NUMBERS, vector, shape, feet(shape.facing, shape.facing, 1.0), state)
+def iterate_at(
+    vector: FloatArray, forward: FeForwardModel, near: Iterate[Solution] | None
+) -> Iterate[Solution]:
+    shape, state = forward.bend(NUMBERS.unpack(vector), NUMBERS.sign, near)
+    return Iterate(NUMBERS, vector, shape, closest_points(shape.facing, shape.facing, 1.0), state)
 
 
 @pytest.fixture(scope="module")
-def bent() -> Trial[Solution]:
-    return trial_at(VECTOR, FeBench(TubeSpec()), None)
+def bent() -> Iterate[Solution]:
+    return iterate_at(VECTOR, FeForwardModel(TubeSpec()), None)
 
 
 def beside(shape: Shape, off_mm: float = 0.7) -> FloatArray:
@@ -59,15 +62,19 @@ def beside(shape: Shape, off_mm: float = 0.7) -> FloatArray:
     return points
 
 
-def test_motion_against_differences(bent: Trial[Solution]) -> None:
-    bench = FeBench(TubeSpec())
+def test_motion_against_differences(bent: Iterate[Solution]) -> None:
+    forward = FeForwardModel(TubeSpec())
     points = beside(bent.shape)
-    jacobian = residual_jacobian(feet(bent.shape.facing, points, 1.0), bench.motion(bent))
+    jacobian = distance_jacobian(
+        closest_points(bent.shape.facing, points, 1.0), forward.motion(bent)
+    )
     assert jacobian.shape == (len(points), len(NAMES))
     for k, (name, scale, most) in enumerate(zip(NAMES, NUMBERS.scale(), MISSED, strict=True)):
         step = 0.1 * scale * np.eye(len(NAMES))[k]
         ahead, behind = (
-            feet(trial_at(VECTOR + by, bench, bent).shape.facing, points, 1.0).gap
+            closest_points(
+                iterate_at(VECTOR + by, forward, bent).shape.facing, points, 1.0
+            ).distance
             for by in (step, -step)
         )
         slope = (ahead - behind) / (2.0 * step[k])
@@ -80,10 +87,10 @@ def test_a_short_root_lets_the_tube_slide() -> None:
     # Joint 1 nearer to the profile's start than its root is long.
     vector = VECTOR.copy()
     vector[3] = 4.0
-    bench = FeBench(TubeSpec())
-    at = trial_at(vector, bench, None)
+    forward = FeForwardModel(TubeSpec())
+    at = iterate_at(vector, forward, None)
     heading = 2.5 + vector[-2]
-    slide = bench.motion(at)[3]
+    slide = forward.motion(at)[3]
     assert slide == pytest.approx(np.tile([np.cos(heading), np.sin(heading)], (len(slide), 1)))
 
 
@@ -97,18 +104,18 @@ def target_of(shape: Shape) -> Profile:
     return Profile(points, s, heading, nothing, nothing.astype(bool), "left", None)
 
 
-def test_a_target_made_by_fe_is_reached(bent: Trial[Solution]) -> None:
+def test_a_target_made_by_fe_is_reached(bent: Iterate[Solution]) -> None:
     off = np.array([0.3, 0.3, 1.0, 1.5, -0.01, 0.0, -0.3])
     said: list[str] = []
     found = correct(
-        FeBench(TubeSpec()), Response.load(), NUMBERS, VECTOR + off, target_of(bent.shape),
-        Steps(0.0, 0.0, 0.0), 0.3, said.append,
+        FeForwardModel(TubeSpec()), Response.load(), NUMBERS, VECTOR + off, target_of(bent.shape),
+        StepSizes(0.0, 0.0, 0.0), 0.3, said.append,
     )  # fmt: skip
     assert found.rms_mm[0] > 0.3
-    assert np.sqrt(np.mean(found.best.feet.gap[:-3] ** 2)) < 0.1
+    assert np.sqrt(np.mean(found.best.closest.distance[:-3] ** 2)) < 0.1
     assert len(found.rms_mm) == len(said) <= 6
     # The state is one of the actuator that is handed back.
-    alone, _ = FeBench(TubeSpec()).bend(found.best.actuator, 1.0, None)
+    alone, _ = FeForwardModel(TubeSpec()).bend(found.best.posed, 1.0, None)
     assert found.best.shape.facing == pytest.approx(alone.facing, abs=0.02)
 
 
@@ -129,29 +136,29 @@ def failing(error: Exception) -> Callable[..., Solution]:
 def test_what_cannot_be_bent(
     error: Exception, says: str, reached: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("profiletool.verify.bench.solve", failing(error))
+    monkeypatch.setattr("profiletool.verify.forward.solve", failing(error))
     with pytest.raises(CannotBend) as caught:
-        FeBench(TubeSpec()).bend(NUMBERS.unpack(VECTOR), 1.0, None)
+        FeForwardModel(TubeSpec()).bend(NUMBERS.unpack(VECTOR), 1.0, None)
     assert str(caught.value) == says
     assert caught.value.reached == reached
 
 
 def test_a_path_that_ends_cannot_be_bent(
-    bent: Trial[Solution], monkeypatch: pytest.MonkeyPatch
+    bent: Iterate[Solution], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     ended = replace(bent.state, critical=Critical("limit point", 0.09))
-    monkeypatch.setattr("profiletool.verify.bench.solve", lambda *_, **__: ended)
+    monkeypatch.setattr("profiletool.verify.forward.solve", lambda *_, **__: ended)
     with pytest.raises(CannotBend, match=r"limit point at 0\.90 bar") as caught:
-        FeBench(TubeSpec()).bend(NUMBERS.unpack(VECTOR), 1.0, None)
+        FeForwardModel(TubeSpec()).bend(NUMBERS.unpack(VECTOR), 1.0, None)
     assert caught.value.reached == 0.09
 
 
 def test_too_far_from_a_known_state_it_goes_from_rest(
-    bent: Trial[Solution], monkeypatch: pytest.MonkeyPatch
+    bent: Iterate[Solution], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(
-        "profiletool.verify.bench.solve_near", failing(NotConverged("far", (), 0.0))
+        "profiletool.verify.forward.solve_near", failing(NotConverged("far", (), 0.0))
     )
-    monkeypatch.setattr("profiletool.verify.bench.solve", lambda *_, **__: bent.state)
-    _, state = FeBench(TubeSpec()).bend(NUMBERS.unpack(VECTOR), 1.0, bent)
+    monkeypatch.setattr("profiletool.verify.forward.solve", lambda *_, **__: bent.state)
+    _, state = FeForwardModel(TubeSpec()).bend(NUMBERS.unpack(VECTOR), 1.0, bent)
     assert state is bent.state

@@ -1,4 +1,4 @@
-"""Finite elements in the loop: a forward model for `profiletool.joints.correction.correct`.
+"""The forward model by finite elements, for `profiletool.joints.correction.correct`.
 
 Every state but the first is found from a similar actuator's, and the sensitivities are FE's own,
 by direct differentiation.
@@ -10,15 +10,15 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fem.actuator import Actuator as Tube
+from fem.actuator import Actuator
 from fem.errors import BadGeometry, NotConverged
 from fem.mesh import Mesh
 from fem.near import solve_near
 from fem.sensitivity import Rate, Sensitivities, flow_to, sensitivities
 from fem.solution import Solution
 from fem.solver import solve
-from profiletool.joints.correction.correct import CannotBend, Trial
-from profiletool.joints.correction.parameters import Actuator
+from profiletool.joints.correction.correct import CannotBend, Iterate
+from profiletool.joints.correction.parameters import PosedChain
 from profiletool.records.frames import Shape, base_axes
 from profiletool.records.request import TubeSpec
 from profiletool.records.units import FloatArray
@@ -27,35 +27,35 @@ from profiletool.verify.run import ended, said, shortly
 from profiletool.verify.tube import tube_of
 
 
-class FeBench:
-    """Bends by finite elements of the whole actuator."""
+class FeForwardModel:
+    """A forward model by finite elements of the whole actuator."""
 
     def __init__(self, material: TubeSpec) -> None:
         self._material = material
         self._rates: tuple[Solution, Sensitivities] | None = None  # the last ones found
 
     def bend(
-        self, actuator: Actuator, sign: float, near: Trial[Solution] | None
+        self, posed: PosedChain, sign: float, near: Iterate[Solution] | None
     ) -> tuple[Shape, Solution]:
         """Bend an actuator, from a similar one's state where that leads there."""
         try:
-            tube = tube_of(actuator.chain, self._material)
-            solution = self._solved(tube, near, actuator.pressure)
+            tube = tube_of(posed.chain, self._material)
+            solution = self._solved(tube, near, posed.pressure)
         except NotConverged as error:
             raise CannotBend(shortly(error), error.reached) from error
         except BadGeometry as error:
             raise CannotBend(f"cannot be modelled: {error}", 0.0) from error
         if solution.critical is not None:
             raise CannotBend(said(ended(solution.critical)), solution.critical.pressure)
-        return shape_of(solution.mesh, solution.states[-1], actuator.pose, sign), solution
+        return shape_of(solution.mesh, solution.states[-1], posed.pose, sign), solution
 
-    def motion(self, trial: Trial[Solution]) -> FloatArray:
+    def motion(self, iterate: Iterate[Solution]) -> FloatArray:
         """Motion of the object-facing line's points by each number: (size, N, 2)."""
-        rates = rates_of(trial)
-        self._rates = (trial.state, rates)
-        return motion_of(trial, rates)
+        rates = rates_of(iterate)
+        self._rates = (iterate.state, rates)
+        return motion_of(iterate, rates)
 
-    def _solved(self, tube: Tube, near: Trial[Solution] | None, pressure: float) -> Solution:
+    def _solved(self, tube: Actuator, near: Iterate[Solution] | None, pressure: float) -> Solution:
         if near is not None:
             known, flow = near.state, None
             if self._rates is not None and self._rates[0] is known:
@@ -68,24 +68,24 @@ class FeBench:
         return solve(tube, [pressure])
 
 
-def rates_of(trial: Trial[Solution]) -> Sensitivities:
-    """Differentiate a trial's state."""
-    solution = trial.state
-    x, pressure = solution.states[-1].x, trial.actuator.pressure
+def rates_of(iterate: Iterate[Solution]) -> Sensitivities:
+    """Differentiate an iterate's state."""
+    solution = iterate.state
+    x, pressure = solution.states[-1].x, iterate.posed.pressure
     return sensitivities(solution.mesh, x, pressure, angles=False)
 
 
-def motion_of(trial: Trial[Solution], rates: Sensitivities) -> FloatArray:
+def motion_of(iterate: Iterate[Solution], rates: Sensitivities) -> FloatArray:
     """Differentiate the object-facing line's points by each number of the vector: (size, N, 2)."""
-    parameters, shape = trial.parameters, trial.shape
-    solution, at = trial.state, trial.actuator
+    parameters, shape = iterate.parameters, iterate.shape
+    solution, at = iterate.state, iterate.posed
     heading = np.radians(at.pose.heading_deg)
     along, outward = base_axes(float(heading), parameters.sign)
 
     def placed(rate: Rate) -> FloatArray:
         return placed_motion(rate, shape, solution.mesh, (along, outward))
 
-    grows = parameters.root_grows(trial.vector)
+    grows = parameters.root_grows(iterate.vector)
     slide = placed(rates.wrapped[0]) if grows else np.broadcast_to(along, shape.facing.shape)
     rows = [*_inner(rates, placed), slide, placed(rates.pressure)]
     if parameters.limits.base_free:
