@@ -21,7 +21,7 @@ project = _PROJECT["name"]
 version = release = VERSION
 project_copyright = "the authors of profiletool, MIT licence"
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc", "public_names"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc", "public_names", "generated"]
 myst_enable_extensions = ["amsmath", "attrs_block", "attrs_inline", "colon_fence", "deflist",
                           "dollarmath"]  # fmt: skip
 myst_heading_anchors = 3
