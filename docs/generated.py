@@ -51,7 +51,7 @@ def said(name: str) -> str:
     place = ROOT / "profiletool" / name
     file = place / "__init__.py" if place.is_dir() else place.with_suffix(".py")
     text = ast.get_docstring(ast.parse(file.read_text("utf-8"))) or ""
-    return text.partition("\n")[0]
+    return text.partition("\n")[0].replace("`", "")
 
 
 def _options() -> Iterator[list[Any]]:
@@ -75,9 +75,14 @@ def table(
     heads : sequence of str
     rows : sequence of sequences of str or node
     """
-    group = nodes.tgroup("", *(nodes.colspec(colwidth=width) for width in widths), cols=len(widths))
-    head, body = nodes.thead("", _row(heads)), nodes.tbody("", *map(_row, rows))
-    return nodes.table("", group + [head, body])
+    group = nodes.tgroup(
+        "",
+        *(nodes.colspec(colwidth=width) for width in widths),
+        nodes.thead("", _row(heads)),
+        nodes.tbody("", *map(_row, rows)),
+        cols=len(widths),
+    )
+    return nodes.table("", group)
 
 
 def _row(cells: Sequence[str | nodes.Node]) -> nodes.row:

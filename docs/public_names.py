@@ -32,9 +32,21 @@ _OUTSIDE = {"collections", "numpy", "np", "os", "pathlib", "typing"}
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Connect to the build."""
+    app.connect("autodoc-process-docstring", _plain_headings, priority=100)
     app.connect("missing-reference", _link)
     app.connect("env-check-consistency", _check_complete)
     return {"parallel_read_safe": True}
+
+
+def _plain_headings(
+    app: Sphinx, what: str, name: str, value: Any, options: Any, lines: list[str]
+) -> None:
+    """Turn a heading in a package's docstring into a rubric: two pages have a Glossary."""
+    if what != "module":
+        return
+    for number in range(len(lines) - 1):
+        if re.fullmatch(r"-{4,}", lines[number + 1]):
+            lines[number : number + 2] = [f".. rubric:: {lines[number]}", ""]
 
 
 @cache

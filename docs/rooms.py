@@ -40,8 +40,8 @@ def rooms(rows: list[list[str]]) -> str:
     for number, row in enumerate(rows):
         marks += _boxes(row, top + _STEP * number)
     end = top + _STEP * len(rows)
-    marks.append(text(_MIDDLE, end + 16, "stand alone; they know neither profiletool nor each other",
-                      GREY))  # fmt: skip
+    alone = "stand alone; they know neither profiletool nor each other"
+    marks.append(text(_MIDDLE, end + 16, alone, GREY))
     marks += _boxes(["fem", "formula"], end + 28, "alone")
     return sheet(_WIDTH, end + 76, *marks)
 
