@@ -11,6 +11,7 @@ from sphinx.application import Sphinx
 from sphinx.util import logging
 from sphinx.writers.html5 import HTML5Translator
 
+sys.path.insert(0, str(Path(__file__).parent))
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from profiletool.records.version import VERSION
 
@@ -20,12 +21,21 @@ project = _PROJECT["name"]
 version = release = VERSION
 project_copyright = "the authors of profiletool, MIT licence"
 
-extensions = ["myst_parser"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc", "public_names", "generated"]
 myst_enable_extensions = ["amsmath", "attrs_block", "attrs_inline", "colon_fence", "deflist",
                           "dollarmath"]  # fmt: skip
 myst_heading_anchors = 3
 exclude_patterns = ["_build"]
 nitpicky = True
+
+# Docstrings are numpy style; what stands in single backticks is a name, see public_names.py.
+default_role = "py:obj"
+autodoc_member_order = "bysource"
+autodoc_preserve_defaults = True
+maximum_signature_line_length = 80
+toc_object_entries_show_parents = "hide"
+numpydoc_show_class_members = False
+numpydoc_attributes_as_param_list = True
 
 html_theme = "furo"
 html_title = f"{project} {version}"

@@ -44,6 +44,11 @@ def main() -> None:
             _write(name, Image.open(made / name))
         (PICTURES / "template.svg").write_bytes((made / "template.svg").read_bytes())
         _write("inflation.jpg", _drawn(inflation(made)))
+        example = HERE.parent / "examples" / "figure.py"
+        subprocess.run(
+            [sys.executable, str(example)], check=True, cwd=place, stdout=subprocess.DEVNULL
+        )
+        (PICTURES / "pear_figure.png").write_bytes((Path(place) / "pear_figure.png").read_bytes())
     _write("formula.png", _drawn(formula()))
 
 

@@ -27,7 +27,13 @@ _MOST_POWERS = 8
 
 
 def shipped() -> dict[str, bytes]:
-    """Files of the formulas that come along, by name."""
+    """Files of the formulas that are part of the package.
+
+    Returns
+    -------
+    dict of str to bytes
+        Name, such as "paper" or "fe", to content.
+    """
     folder = resources.files("formula") / "coefficients"
     return {
         file.name.removesuffix(".json"): file.read_bytes()
@@ -42,7 +48,12 @@ def load_formula(path: Path | None = None) -> Formula:
     Parameters
     ----------
     path : Path, optional
-        The file, or the name of a formula that comes along; by default the paper's.
+        The file, or the name of a formula of the package (`shipped`); by default the paper's,
+        equation (9) with the coefficients of Table 3.
+
+    Returns
+    -------
+    Formula
 
     Raises
     ------

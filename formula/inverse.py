@@ -50,11 +50,15 @@ def theta_range_deg(
     Parameters
     ----------
     formula : Formula
-    openF_mm, pressure_bar : array_like
+    openF_mm : array_like
+        Length of the cut, mm.
+    pressure_bar : array_like
+        Gauge pressure, bar.
 
     Returns
     -------
-    least, most : ndarrays of the broadcast shape, deg
+    least, most : ndarray
+        Of the broadcast shape, deg.
 
     Raises
     ------
@@ -69,16 +73,22 @@ def theta_range_deg(
 def alpha_deg(
     formula: Formula, theta_wanted_deg: ArrayLike, openF_mm: ArrayLike, pressure_bar: ArrayLike
 ) -> NDArray[np.float64]:
-    """Alpha that gives the wanted angle; arguments broadcast.
+    """Alpha that gives the wanted angle: the inverse of `theta_deg` by alpha.
 
     Parameters
     ----------
     formula : Formula
-    theta_wanted_deg, openF_mm, pressure_bar : array_like
+    theta_wanted_deg : array_like
+        Wanted angle, deg, 0 or above.
+    openF_mm : array_like
+        Length of the cut, mm.
+    pressure_bar : array_like
+        Gauge pressure, bar.
 
     Returns
     -------
-    ndarray of the broadcast shape, deg
+    ndarray
+        Uncut sector alpha_closed of the broadcast shape, deg.
 
     Raises
     ------

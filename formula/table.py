@@ -21,13 +21,14 @@ _SLACK_DEG = 1e-9  # a cell equal to the wanted angle counts as reaching it
 
 @dataclass(frozen=True)
 class Table:
-    """Angles over pressure, openF and alpha.
+    """Angles over pressure, openF and alpha, laid out as the paper's Table 4.
 
     Attributes
     ----------
     pressures_bar, openF_mm, alpha_deg : tuple of float
         Ascending.
     theta_deg : (pressures, openF, alpha) array
+        Bending angles, deg.
     beyond : (pressures, openF, alpha) array of bool
         Where the formula is extrapolated.
     """
@@ -46,8 +47,9 @@ class Assignment:
     Attributes
     ----------
     pressure_bar : float
+        Common to all joints, bar.
     alpha_closed_deg, theta_deg : tuple of float
-        Of each joint.
+        Uncut sector and angle of each joint, deg.
     beyond : tuple of bool
         Whether each joint's cell is extrapolated.
     """
@@ -71,7 +73,11 @@ def make_table(
     formula : Formula
     openF_mm, pressures_bar, alpha_deg : sequence of float, optional
         Rows and columns; by default those of the paper's Table 4, as far as the formula's range
-        goes.
+        goes. mm, bar and deg.
+
+    Returns
+    -------
+    Table
 
     Raises
     ------
@@ -100,7 +106,7 @@ def make_table(
 def assign(
     table: Table, openF_mm: Sequence[float], theta_wanted_deg: Sequence[float]
 ) -> Assignment:
-    """Choose the common pressure and each joint's alpha by the paper's look-up.
+    """Choose the common pressure and each joint's alpha by the paper's look-up (Section 4).
 
     The joint with the largest angle (of equals the one with the shortest cut) sets the pressure:
     of the cells of its openF block at or above the wanted angle the one with the least excess.
@@ -111,7 +117,8 @@ def assign(
     Parameters
     ----------
     table : Table
-    openF_mm, theta_wanted_deg : sequence of float, one each per joint
+    openF_mm, theta_wanted_deg : sequence of float
+        Length of the cut, mm, and wanted angle, deg, of each joint.
 
     Returns
     -------

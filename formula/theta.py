@@ -17,11 +17,15 @@ Terms = tuple[tuple[tuple[float, float, float], ...], ...]
 
 @dataclass(frozen=True)
 class Formula:
-    """theta = sum of terms[j][k - 1][i] openF^j P^k alpha^i, and the range that it holds for.
+    """Polynomial for the angle of one joint, and the range that it holds for.
+
+    theta = sum of ``terms[j][k - 1][i]`` openF^j P^k alpha^i. Formula (9) of the paper is one of
+    these, with the coefficients of Table 3.
 
     Attributes
     ----------
     name, source : str
+        As the formula file gives them.
     sha256 : str
         Of the file that it was read from.
     terms : tuple
@@ -76,16 +80,23 @@ def quadratic_in_alpha(
 def theta_deg(
     formula: Formula, alpha_deg: ArrayLike, openF_mm: ArrayLike, pressure_bar: ArrayLike
 ) -> NDArray[np.float64]:
-    """Bending angle by a formula, deg; arguments broadcast, the range is not checked.
+    """Bending angle of a joint by a formula; for the paper's, equation (9).
 
     Parameters
     ----------
     formula : Formula
-    alpha_deg, openF_mm, pressure_bar : array_like
+        Its range is not checked.
+    alpha_deg : array_like
+        Uncut sector alpha_closed, deg.
+    openF_mm : array_like
+        Length of the cut, mm.
+    pressure_bar : array_like
+        Gauge pressure, bar.
 
     Returns
     -------
-    ndarray of the broadcast shape
+    ndarray
+        Angles of the broadcast shape, deg; a magnitude, toward the uncut sector.
     """
     a, b, c = quadratic_in_alpha(formula, openF_mm, pressure_bar)
     alpha = np.asarray(alpha_deg, dtype=float)

@@ -55,8 +55,8 @@ def design(source: Source | Request, *, say: Say | None = None, **options: Any) 
     say : callable, optional
         Takes one line of progress at a time.
     **options
-        Fields of the options by name: ``height_mm=107.5``, ``side="right"``, ``joints=5``,
-        ``max_pressure_bar=1.5``, ``verify=False`` ...; see `Request`.
+        Options by field name: ``height_mm=107.5``, ``side="right"``, ``joints=5``,
+        ``max_pressure_bar=1.5``, ``verify=False``; see `profiletool.records.options.DESIGN`.
 
     Returns
     -------
