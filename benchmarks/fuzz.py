@@ -27,6 +27,8 @@ from typing import Any
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # calls of commands are the tests'
+
 import numpy as np
 from _fuzz_corpus import SUFFIX, corpus
 from _fuzz_damage import mutated
@@ -45,25 +47,20 @@ ALLOWED = {
 
 def readers() -> dict[str, Callable[[Path], object]]:
     """Give what reads a file of each kind as the commands do."""
-    from typer.testing import CliRunner
-
     from profiletool.campaign.derive import load_base
-    from profiletool.cli.main import app
     from profiletool.files.design_json import load_design
     from profiletool.files.formula import read_formula
     from profiletool.image.load import load_picture
     from profiletool.profile.drawing.load import load_vector
     from profiletool.rubber.presets import parse_rubber
     from profiletool.subject.recall import target_of
+    from tests.calls import call
 
     def options(path: Path) -> None:
         # There is no picture: it ends before any work is done, and options come first.
-        words = ["design", str(path.parent / "absent.csv"), "--no-verify", "--config", str(path)]
-        result = CliRunner().invoke(app, words)
-        if not isinstance(result.exception, SystemExit):
-            raise result.exception or AssertionError("a design of nothing")
-        if result.exit_code not in ALLOWED["toml"]:
-            raise AssertionError(f"exit {result.exit_code}: {result.output}")
+        result = call("design", path.with_name("absent.csv"), "--no-verify", "--config", path)
+        if result.exit_code not in ALLOWED["toml"] or "Traceback" in result.stderr:
+            raise AssertionError(f"exit {result.exit_code}: {result.stdout}{result.stderr}")
         raise ProfiletoolError(str(result.exit_code))
 
     def shape(path: Path) -> object:

@@ -40,6 +40,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--random", type=int, default=20, help="further random poses")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--smallest", action="store_true", help="one pose of one body")
     options = parser.parse_args()
     rng = np.random.default_rng(options.seed)
     print(
@@ -51,6 +52,8 @@ def main() -> None:
     shots += [
         (f"random {k}", kinds[k % len(kinds)], random_shot(rng)) for k in range(options.random)
     ]
+    if options.smallest:
+        shots = shots[:1]
     trials = [row(name, kind, shot, BODIES[kind], rng) for name, kind, shot in shots]
     worst = [abs(tried.worst) for tried in trials]
     print(

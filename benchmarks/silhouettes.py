@@ -114,13 +114,13 @@ def _area_under(made: Sequence[Outcome]) -> float:
     return float((right[:, None] > other).mean() + 0.5 * (right[:, None] == other).mean())
 
 
-def held(grounds: Sequence[str]) -> str:
+def held(grounds: Sequence[str], names: Sequence[str]) -> str:
     """Say how many objects in a hand are refused, and how many others are wrong."""
     rows = []
     for skin, colour in _SKINS.items():
         made = []
         for ground in grounds:
-            for name in CUT_OUTS:
+            for name in names:
                 shown = composite(name, ground, skin=colour)
                 made.append(outcome(name, ground, shown.picture, shown.truth))
         kept = [one for one in made if not one.refused]
@@ -136,10 +136,12 @@ def main() -> None:
     parser.add_argument("--ground", action="append", choices=list(GROUNDS))
     parser.add_argument("--list", action="store_true", help="every picture that is off or refused")
     parser.add_argument("--held", action="store_true", help="objects in a hand too")
+    parser.add_argument("--only", action="append", choices=CUT_OUTS, help="this cut-out alone")
     arguments = parser.parse_args()
     print(machine(), flush=True)
     grounds = arguments.ground or list(GROUNDS)
-    made = list(outcomes(grounds, CUT_OUTS, arguments.seeds))
+    names = arguments.only or CUT_OUTS
+    made = list(outcomes(grounds, names, arguments.seeds))
     rows = [row(ground, [one for one in made if one.ground == ground]) for ground in grounds]
     rows.append(row("all", made))
     head = ("", "pictures", "median IoU", "worst decile", "worst", "refused", "of them right", "s")
@@ -150,7 +152,7 @@ def main() -> None:
                 print(f"{one.name} on {one.ground}: {'refused, ' if one.refused else ''}"
                       f"{one.iou:.3f} ({one.confidence:.2f}, {one.method})")  # fmt: skip
     if arguments.held:
-        print("", held(grounds), "", sep="\n")
+        print("", held(grounds, names), "", sep="\n")
     truth = load_picture(PHOTOS / "bulb_mask.png").rgb[..., 0] > 127
     for ground in ("white", "grey"):
         one = outcome("bulb", ground, load_picture(PHOTOS / f"bulb_on_{ground}.jpg"), truth)
