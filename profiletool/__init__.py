@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from profiletool.records.picture import Picture
     from profiletool.records.profile import DrawnLine, Profile
     from profiletool.records.request import Request, TubeSpec
+    from profiletool.report.figures import figures_of
     from profiletool.subject.find import Subject
     from profiletool.verify.check import Check
 
