@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize_scalar
 
-from fem.material import FloatArray, Law, MooneyRivlin, kinematics
+from fem.arrays import FloatArray
+from fem.material import Law, MooneyRivlin, kinematics
 from profiletool.errors import UnreadableInput
 from profiletool.files.columns import NUMBER, read_lines, shown
 
