@@ -19,7 +19,7 @@ from profiletool.cli.main import app
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]
-DEVELOPERS = [DOCS / "architecture.md", DOCS / "contributing.md", *DOCS.glob("extend/*.md")]
+DEVELOPERS = [DOCS / "architecture.md", DOCS / "contributing.md", *sorted(DOCS.glob("extend/*.md"))]
 # What a how-to tells the reader to write.
 NEW = {"report/markdown.py", "read_json.py", "gent.py"}
 NEW_FLAGS = {"--max-openF", "--thread"}
