@@ -74,7 +74,7 @@ class PaperFit:
 
 
 @dataclass(frozen=True)
-class Candidate:
+class FittedForm:
     """A polynomial form, by its highest powers, and how good it is.
 
     Attributes
@@ -144,7 +144,7 @@ def errors_of(data: Data, predict: Callable[..., FloatArray]) -> Errors:
     return _errors(data, predict(alpha, openF, P) - theta)
 
 
-def candidates(data: Data) -> tuple[Candidate, ...]:
+def candidates(data: Data) -> tuple[FittedForm, ...]:
     """Fit every form that the campaign has runs enough for, the best validated first."""
     alphas, cuts, pressures = (len(np.unique(values)) for values in data.points[:3])
     most = min(2, alphas - 1)
@@ -161,7 +161,7 @@ def candidates(data: Data) -> tuple[Candidate, ...]:
             left_out = runs == run
             apart[left_out] = _solve(data, form, ~left_out)[2][left_out]
         fits.append(
-            Candidate(
+            FittedForm(
                 form,
                 _terms(coefficients, scales, form),
                 _errors(data, residuals),
@@ -173,7 +173,7 @@ def candidates(data: Data) -> tuple[Candidate, ...]:
     return tuple(sorted(fits, key=lambda candidate: candidate.validated.rms))
 
 
-def best(fits: tuple[Candidate, ...]) -> Candidate:
+def best(fits: tuple[FittedForm, ...]) -> FittedForm:
     """Choose the smallest form of those that are as good as the best."""
     limit = _AS_GOOD * fits[0].validated.rms
     return min((c for c in fits if c.validated.rms <= limit), key=lambda c: c.size)

@@ -32,14 +32,14 @@ from profiletool.profile.drawing.load import drawing_of
 from profiletool.records.design import Design
 from profiletool.records.making import check_request, request_of
 from profiletool.records.picture import Picture
-from profiletool.records.profile import Drawing, Profile
+from profiletool.records.profile import DrawnLine, Profile
 from profiletool.records.request import Request
 from profiletool.subject.find import Subject
 from profiletool.subject.find import find_subject as find
 from profiletool.verify.check import Check, check
 from profiletool.verify.recompute import recomputed
 
-Source = str | PathLike[str] | NDArray[Any] | Picture | Drawing | Profile
+Source = str | PathLike[str] | NDArray[Any] | Picture | DrawnLine | Profile
 Say = Callable[[str], None]
 
 
@@ -48,7 +48,7 @@ def design(source: Source | Request, *, say: Say | None = None, **options: Any) 
 
     Parameters
     ----------
-    source : path, array, Picture, Drawing or Profile
+    source : path, array, Picture, DrawnLine or Profile
         A picture or drawing as the command `design` takes it; (H, W, 3), (H, W, 4) or (H, W)
         uint8 for a picture in RGB, RGBA or grey; (N, 2) for the points of a drawn line, mm, y up,
         closed where the last point repeats the first; or a profile to follow as it is.
@@ -225,7 +225,7 @@ def request_for(source: Source | Request, **options: Any) -> Request:
     return replace(request_of(file, options, formula), given=given)
 
 
-def _given(array: NDArray[Any]) -> Picture | Drawing:
+def _given(array: NDArray[Any]) -> Picture | DrawnLine:
     """Take an array for a picture or for the points of a line."""
     if array.ndim == 2 and array.shape[1] == 2:
         return drawing_of(array)

@@ -15,7 +15,7 @@ from profiletool.records.making import check_request
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request
 from profiletool.subject.find import Subject, find_subject
-from profiletool.verdict.attempt import Attempt, attempt_of
+from profiletool.verdict.draft import Draft, attempt_of
 from profiletool.verdict.missed import Missed
 from profiletool.verdict.notes import notes_of
 from profiletool.verdict.reasons import misses_of, reasons_of
@@ -29,11 +29,20 @@ _STABLE_SHARE = 0.97  # of the pressure at which FE loses its stability
 
 
 @dataclass(frozen=True, repr=False)
-class Result(Attempt):
-    """A design with its verdict, and everything that it was made from; see `Attempt`.
+class Result(Draft):
+    """A design with its verdict, and everything that it was made from; see `Draft`.
 
     Attributes
     ----------
+    request : Request
+    subject : Subject
+    formula : Formula
+    plan : Plan
+    design : Design
+    shape : Shape
+        The tube as the formula bends it.
+    check : Check or None
+        The finite-element run; None where none was asked for.
     reasons : tuple of str
         Why the design is infeasible; none where it is feasible.
     misses : tuple of Missed
@@ -95,10 +104,10 @@ def _attempt(
     formula: Formula,
     say: Callable[[str], None],
     progress: Progress | None,
-) -> Attempt:
-    profile, material = subject.profile, request.tube
+) -> Draft:
+    profile, spec = subject.profile, request.tube
     if request.method == "optimal":
-        forward = FeForwardModel(material) if request.verify and request.refine else None
+        forward = FeForwardModel(spec) if request.verify and request.refine else None
         plan = optimal_plan(request, profile, formula, say, forward)
     else:
         plan = paper_plan(request, profile, formula, say)
@@ -109,7 +118,7 @@ def _attempt(
     return replace(attempt, design=checked.design, check=checked)
 
 
-def _lower(attempt: Attempt) -> Request | None:
+def _lower(attempt: Draft) -> Request | None:
     """Ask for less pressure where FE loses its stability below what a refined plan works at."""
     request = attempt.request
     run = None if attempt.check is None else attempt.check.run
@@ -131,7 +140,7 @@ def _verified(
     return check(design, profile.points, share)
 
 
-def _judged(attempt: Attempt) -> Result:
+def _judged(attempt: Draft) -> Result:
     """Add the verdict: reasons against the design, notes for its user, sensitivities."""
     misses = misses_of(attempt)
     reasons = reasons_of(attempt, misses)

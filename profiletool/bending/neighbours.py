@@ -44,7 +44,7 @@ _LOG_MOST = 6.0
 
 
 @dataclass(frozen=True)
-class Batch:
+class ChainBatch:
     """Chains of the tabulated tube at one pressure each, filled up to the same number of joints.
 
     Attributes
@@ -82,7 +82,7 @@ class Neighbours:
         return np.asarray(factors)
 
 
-def batch(chains: Sequence[Chain], pressures: Sequence[float]) -> Batch:
+def batch(chains: Sequence[Chain], pressures: Sequence[float]) -> ChainBatch:
     """Line chains up at their clamped ends."""
     most = max(len(chain.centre) for chain in chains)
     shape = (len(chains), most)
@@ -99,13 +99,13 @@ def batch(chains: Sequence[Chain], pressures: Sequence[float]) -> Batch:
         terms[b, :n, 2] = (chain.openF - _OPENF[0]) / _OPENF[1]
         terms[b, :, 3] = (pressure - _PRESSURE[0]) / _PRESSURE[1]
         sense[b, :n], real[b, :n] = chain.sense, True
-    return Batch(wrapped, terms, sense, real)
+    return ChainBatch(wrapped, terms, sense, real)
 
 
-def log_factors(modes: FloatArray, chains: Batch) -> FloatArray:
+def log_factors(modes: FloatArray, chains: ChainBatch) -> FloatArray:
     """Logarithm of the factors on turn and stretch: (B, n, 2).
 
-    A mode's parameters, the logarithms over `Batch.terms`: 4 of what a cut wants to warp (no
+    A mode's parameters, the logarithms over `ChainBatch.terms`: 4 of what a cut wants to warp (no
     constant: only the ratio between joints counts), 5 of a cut's stiffness, 1 of the lag, 1 of the
     resistance of a cut to warping of both edges the same way; then for turn and stretch 5 of the
     effect of ``apart``; for turn, then for stretch, that of the squares of ``along`` and

@@ -13,7 +13,7 @@ from fem.material import Law
 from formula.data import Data
 from formula.errors import BadFormula
 from formula.files import campaign_of, parse_formula, read_bytes
-from formula.fit import Candidate, Errors, PaperFit, best, candidates, errors_of, fit_paper
+from formula.fit import Errors, FittedForm, PaperFit, best, candidates, errors_of, fit_paper
 from formula.similar import carried, corrected, correction_runs
 from formula.theta import Formula, Terms, theta_deg
 from profiletool.campaign.runs import Model, Outcome, Task, actuator_of
@@ -35,6 +35,9 @@ class CampaignPlan:
 
     Attributes
     ----------
+    diameter_mm, wall_mm : float
+        Of the tube.
+    rubber : Rubber
     alpha_deg, openF_mm, pressures_bar : tuple of float
         Ascending.
     model : {"converged", "paper"}
@@ -89,9 +92,9 @@ class Derivation:
     paper : PaperFit or None
         None where the campaign is too small for the paper's steps.
     paper_errors : Errors or None
-    forms : tuple of Candidate
+    forms : tuple of FittedForm
         All that were tried.
-    chosen : Candidate
+    chosen : FittedForm
     """
 
     plan: CampaignPlan
@@ -103,8 +106,8 @@ class Derivation:
     failures: tuple[tuple[float, float, str], ...]
     paper: PaperFit | None
     paper_errors: Errors | None
-    forms: tuple[Candidate, ...]
-    chosen: Candidate
+    forms: tuple[FittedForm, ...]
+    chosen: FittedForm
 
 
 def load_base(name: str) -> Base:

@@ -9,8 +9,7 @@ fields : see `profiletool.bending.response_table`
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -297,8 +296,3 @@ def check(runs: Sequence[Lines], response: Response) -> Error:
             rms.append(float(np.sqrt(square.mean())) / hundred)
             worst.append(float(np.sqrt(square.max())) / hundred)
     return Error(np.array(rms), np.array(worst))
-
-
-def with_about(table: ResponseTable, about: dict[str, Any]) -> ResponseTable:
-    """Add entries to what a table tells of its origin."""
-    return replace(table, about={**table.about, **about})

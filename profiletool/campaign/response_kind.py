@@ -14,13 +14,11 @@ from profiletool.campaign.kind import RunKind
 from profiletool.campaign.response_fit import BASE, SIGN, Lines
 from profiletool.campaign.response_tasks import PLUG_MM, ResponseTask
 from profiletool.records.units import BAR_PER_MPA
-from profiletool.verify.run import inflate, reason
+from profiletool.verify.run import inflate, reason, shortly
 
 SCHEMA = "profiletool.response_run/1"  # to be raised where `run` reads other numbers off a solution
-_CHAIN, _LINES = (
-    ("centre", "openF", "alpha", "alpha_center"),
-    ("pressure", "along", "facing", "far"),
-)
+_CHAIN = ("centre", "openF", "alpha", "alpha_center")
+_LINES = ("pressure", "along", "facing", "far")
 
 
 def run(task: ResponseTask) -> Lines:
@@ -31,18 +29,11 @@ def run(task: ResponseTask) -> Lines:
         for joint in zip(chain.centre, chain.openF, chain.alpha, chain.alpha_center, strict=True)
     )
     actuator = Actuator(chain.length, windows, plug=PLUG_MM)
-    pressures, ended = task.pressures_bar, None
-    while True:
-        try:
-            found = inflate(actuator, pressures, BASE, SIGN, threads=1).verification
-            break
-        except NotConverged as error:
-            ended = f"not converged beyond {BAR_PER_MPA * error.reached:.2f} bar"
-            reached = tuple(p for p in pressures if p <= BAR_PER_MPA * error.reached)
-            pressures = reached if len(reached) < len(pressures) else pressures[:-1]
-            if not pressures:
-                return _no_lines(task, ended)
-    ended = reason(found) or ended
+    try:
+        found = inflate(actuator, task.pressures_bar, BASE, SIGN, threads=1).verification
+    except NotConverged as error:
+        return _no_lines(task, shortly(error))
+    ended = reason(found) or None
     shapes = [state.shape for state in found.states]
     if not shapes:
         return _no_lines(task, ended)
@@ -107,8 +98,8 @@ def from_json(data: bytes) -> Lines:
             for name in ("facing", "far")
         )
         tree = body["chain"]
-        joints = (np.array(tree[name], dtype=float) for name in _CHAIN)
-        chain = Chain(*joints, length=tree["length"])
+        centre, openF, alpha, alpha_center = (np.array(tree[name], dtype=float) for name in _CHAIN)
+        chain = Chain(centre, openF, alpha, alpha_center, tree["length"])
         return Lines(body["name"], chain, pressure, along, facing, far, body["ended"])
     except (KeyError, TypeError, ValueError) as error:
         raise ValueError("this is no run of lines") from error

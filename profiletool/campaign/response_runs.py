@@ -25,7 +25,6 @@ from profiletool.campaign.response_fit import (
     factors_in,
     fit_neighbours,
     tabulate,
-    with_about,
 )
 from profiletool.campaign.response_kind import RESPONSE_RUN
 from profiletool.campaign.response_tasks import (
@@ -114,7 +113,7 @@ def main() -> None:
         "error": figures,
     }
     with asked.out.open("wb") as file:
-        with_about(response.table, about).save(file)
+        replace(response.table, about={**response.table.about, **about}).save(file)
     for name, figure in figures.items():
         print(name, figure)
 

@@ -157,30 +157,29 @@ def key(task: Task) -> str:
 
 def run(task: Task) -> Outcome:
     """Run a task on one thread, as far as it goes; what the model refuses ends up in `failure`."""
-    settings, pressures, failure = _SETTINGS[task.model], task.pressures_bar, None
+    settings = _SETTINGS[task.model]
+    asked = [p / BAR_PER_MPA for p in task.pressures_bar]
     try:
-        actuator = actuator_of(task)
-        while pressures:
-            asked = [p / BAR_PER_MPA for p in pressures]
-            try:
-                found = solve(actuator, asked, settings.size, settings.options, threads=1)
-            except NotConverged as error:
-                # Asked again for what was reached only, which is lost with the error.
-                failure = f"not converged beyond {BAR_PER_MPA * error.reached:.2f} bar"
-                reached = sum(p <= error.reached for p in asked)
-                pressures = pressures[: min(reached, len(pressures) - 1)]
-                continue
-            if found.critical is not None:
-                failure = (
-                    f"{found.critical.kind} at {BAR_PER_MPA * found.critical.pressure:.2f} bar"
-                )
-            return _read_off(found, pressures, failure)
+        found = solve(actuator_of(task), asked, settings.size, settings.options, threads=1)
+    except NotConverged as error:
+        failure = f"not converged beyond {BAR_PER_MPA * error.reached:.2f} bar"
+        if isinstance(error.solution, Solution):
+            return _read_off(error.solution, task.pressures_bar, failure)
     except FemError as error:
         failure = str(error)
+    else:
+        return _read_off(found, task.pressures_bar, _ended(found))
     return Outcome((), (), (), (), failure)
 
 
+def _ended(found: Solution) -> str | None:
+    if found.critical is None:
+        return None
+    return f"{found.critical.kind} at {BAR_PER_MPA * found.critical.pressure:.2f} bar"
+
+
 def _read_off(found: Solution, pressures: tuple[float, ...], failure: str | None) -> Outcome:
+    """Read the reached pressures off a solution; there may be none."""
     rest, *loaded = found.states
     (window,) = found.mesh.actuator.windows
     moved = [rigid_motion(rest.sectors, state.sectors, window.centre) for state in loaded]

@@ -52,9 +52,9 @@ def joint(
         from profiletool.verify.run import DOWN, LYING, inflate, pressures_to
         from profiletool.verify.tube import joint_actuator
 
-        material = TubeSpec(outer_diameter_mm=diameter, wall_mm=wall)
+        spec = TubeSpec(outer_diameter_mm=diameter, wall_mm=wall)
         with _failures(UsageError), _bar(pressure, quiet) as progress:
-            actuator = joint_actuator(openF, alpha, alpha_center, material)
+            actuator = joint_actuator(openF, alpha, alpha_center, spec)
             run = inflate(actuator, pressures_to(pressure), LYING, DOWN, progress=progress)
         found = run.verification
         what = (

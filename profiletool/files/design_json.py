@@ -50,24 +50,23 @@ def from_json(text: str | bytes, file: str) -> Design:
     return design
 
 
-def load_design(path: Path) -> Design:
+def load_design(path: Path | str) -> Design:
     """Read a design.json.
 
     Parameters
     ----------
-    path : Path
-        The file, at most 5 MB.
+    path : Path or str
 
     Returns
     -------
     Design
-        Equal to the one that was written, but for the rounding to six decimals.
 
     Raises
     ------
     UnreadableInput
         When the file cannot be read or holds no design.
     """
+    path = Path(path)
     try:
         data = read_file(path, _MOST_BYTES, "a design.json")
     except UnreadableInput as error:

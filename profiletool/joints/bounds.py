@@ -14,13 +14,13 @@ from profiletool.records.units import BAR_PER_MPA, FloatArray
 BASE_TURN_RAD, BASE_OFFSET_MM = float(np.radians(15.0)), 3.0
 
 
-def limits_of(model: Model, material: TubeSpec, base_free: bool = False) -> Limits:
+def limits_of(model: Model, spec: TubeSpec, base_free: bool = False) -> Limits:
     """Bounds that the tube, the gauze and the model set.
 
     Parameters
     ----------
     model : Model
-    material : TubeSpec
+    spec : TubeSpec
     base_free : bool
         Whether the base may leave the profile's start tangent, by up to `BASE_TURN_RAD` and
         `BASE_OFFSET_MM`.
@@ -28,17 +28,17 @@ def limits_of(model: Model, material: TubeSpec, base_free: bool = False) -> Limi
     low, high = model.pressure
     return Limits(
         alpha=model.alpha,
-        pressure=(low, max(min(high, material.max_pressure_bar / BAR_PER_MPA), low)),
-        wrap_mm=wrap_mm(material),
+        pressure=(low, max(min(high, spec.max_pressure_bar / BAR_PER_MPA), low)),
+        wrap_mm=wrap_mm(spec),
         end_mm=END_WRAP_MM,
-        root_mm=material.root_mm,
-        max_length_mm=material.max_length_mm,
+        root_mm=spec.root_mm,
+        max_length_mm=spec.max_length_mm,
         base_turn_rad=BASE_TURN_RAD if base_free else 0.0,
         base_offset_mm=BASE_OFFSET_MM if base_free else 0.0,
     )
 
 
-def cuts_of(model: Model, material: TubeSpec) -> FloatArray:
+def cuts_of(model: Model, spec: TubeSpec) -> FloatArray:
     """Give the cuts in whole meshes that the model holds for, mm.
 
     Raises
@@ -46,7 +46,7 @@ def cuts_of(model: Model, material: TubeSpec) -> FloatArray:
     formula.errors.OutOfRange
         When there is none.
     """
-    (low, high), pitch = model.openF, material.pitch_mm
+    (low, high), pitch = model.openF, spec.pitch_mm
     cuts = np.arange(np.ceil(low / pitch - 1e-9), np.floor(high / pitch + 1e-9) + 1.0) * pitch
     if cuts.size == 0:
         raise OutOfRange(
@@ -60,9 +60,9 @@ WRAP_MM = 2.0  # least wrapped length between two windows, and at least one mesh
 END_WRAP_MM = 4.0  # least wrapped length at the closed end: the paper's mould leaves 4 mm there
 
 
-def wrap_mm(material: TubeSpec) -> float:
+def wrap_mm(spec: TubeSpec) -> float:
     """Least wrapped length between two windows."""
-    return max(WRAP_MM, material.pitch_mm)
+    return max(WRAP_MM, spec.pitch_mm)
 
 
 @dataclass(frozen=True)

@@ -109,9 +109,9 @@ def _standing(
     def say_fe(line: str) -> None:
         say(f"finite elements, {line}")
 
-    material, notes = request.tube, list[str]()
+    spec, notes = request.tube, list[str]()
     for _ in range(_CHOICES):
-        choice = _chosen(request, profile, model, material)
+        choice = _chosen(request, profile, model, spec)
         say(
             f"joints: {len(choice.chain.openF)} at {BAR_PER_MPA * choice.pressure:.2f} bar, "
             f"{choice.misfit.rms_mm:.2f} mm RMS off the profile by the {_by(model)}"
@@ -125,19 +125,19 @@ def _standing(
             notes.append(f"the first choice of joints did not stand by FE: {problem}")
             say(notes[-1])
             posed = by_model(choice)
-            material = replace(material, max_pressure_bar=BAR_PER_MPA * _AGAIN * problem.reached)
+            spec = replace(spec, max_pressure_bar=BAR_PER_MPA * _AGAIN * problem.reached)
             if problem.reached <= choice.limits.pressure[0]:
                 break
     return posed, choice, tuple(notes)
 
 
 def _model(request: Request, formula: Formula) -> Model:
-    material = request.tube
+    spec = request.tube
     if request.formula is not None:
-        return FormulaModel(formula, material.radius_mm)
-    law = law_of(material.rubber)
+        return FormulaModel(formula, spec.radius_mm)
+    law = law_of(spec.rubber)
     return Response.load().scaled(
-        material.outer_diameter_mm, material.wall_mm, stiffness=0.5 * law.shear_modulus
+        spec.outer_diameter_mm, spec.wall_mm, stiffness=0.5 * law.shear_modulus
     )
 
 
@@ -145,7 +145,7 @@ def _by(model: Model) -> str:
     return "joint response" if isinstance(model, Response) else "formula"
 
 
-def _chosen(request: Request, profile: Profile, model: Model, material: TubeSpec) -> Choice:
+def _chosen(request: Request, profile: Profile, model: Model, spec: TubeSpec) -> Choice:
     options = ChoiceOptions(
         tolerance_mm=request.tolerance_mm or TOLERANCE_MM,
         interference_mm=request.interference_mm,
@@ -153,14 +153,14 @@ def _chosen(request: Request, profile: Profile, model: Model, material: TubeSpec
         base_free=request.base_free,
     )
     try:
-        return choose(profile, model, material, options)
+        return choose(profile, model, spec, options)
     except OutOfRange as error:
         raise UsageError(f"{error}; change `pitch_mm`, `max_pressure_bar` or `formula`") from error
 
 
 def _step_sizes(request: Request) -> StepSizes:
-    material = request.tube
-    thread = material.pitch_mm / material.radius_mm
+    spec = request.tube
+    thread = spec.pitch_mm / spec.radius_mm
     alpha = request.alpha_step_deg
     return StepSizes(
         alpha=thread if alpha is None else float(np.radians(alpha)),

@@ -41,13 +41,13 @@ def paper_plan(
     Infeasible
         When no pressure serves all joints.
     """
-    material = request.tube
+    spec = request.tube
     try:
-        table = theta_table(formula, material)
+        table = theta_table(formula, spec)
     except OutOfRange as error:
         raise UsageError(f"{error}; change `pitch_mm`, `max_pressure_bar` or `formula`") from error
     tolerance = request.tolerance_mm or PAPER_TOLERANCE_MM
-    rules = joint_rules(table, material, tolerance)
+    rules = joint_rules(table, spec, tolerance)
     sectors = discretise(profile, rules, request.joints)
     if not sectors:
         raise NoObject(
@@ -55,7 +55,7 @@ def paper_plan(
             "take another `side` or stretch, or a smaller `tolerance_mm`"
         )
     try:
-        layout = lay_out(profile, sectors, table, material)
+        layout = lay_out(profile, sectors, table, spec)
     except OutOfRange as error:
         raise Infeasible(f"no pressure serves all joints: {error}") from error
     say(f"joints: {len(sectors)} at {layout.pressure_bar:.2f} bar")
@@ -63,9 +63,7 @@ def paper_plan(
     return Plan(
         layout=layout,
         by="formula",
-        bent=deform(
-            layout.bends(), layout.length_mm, material.radius_mm, layout.pose, profile.sign
-        ),
+        bent=deform(layout.bends(), layout.length_mm, spec.radius_mm, layout.pose, profile.sign),
         places=np.array([sector.centre for sector in sectors]),
         sectors=sectors,
         rules=rules,

@@ -36,11 +36,24 @@ def sense_of(alpha_center_deg: float, joint: int) -> float:
 class Joint:
     """One joint of an actuator, as a row of the paper's Table 5.
 
-    theta is a magnitude; ``alpha_center_deg`` tells the direction (270 toward the object, 90
-    away from it). It is given as wanted, and as the formula, the joint response (where the joints
-    were chosen by it) and FE predict it. ``F_mm`` runs from this joint's centre to the next
-    one's, the last one's to the tube's end. ``centre_mm`` is the joint's place along the tube,
-    from the clamped end. ``stretch_fe`` is the largest principal stretch of the rubber there.
+    Attributes
+    ----------
+    number : int
+        From 1, from the clamped end on.
+    F_mm : float
+        From this joint's centre to the next one's, the last one's to the tube's end.
+    openF_mm : float
+        Axial length of the cut.
+    alpha_closed_deg, alpha_center_deg : float
+        Extent of the uncut sector, and its middle: 270 bends toward the object, 90 away from it.
+    theta_target_deg, theta_formula_deg : float
+        Bending angle, a magnitude: as wanted, and as the formula predicts it.
+    theta_fe_deg, theta_response_deg : float or None
+        The same by finite elements and by the joint response; None where neither was asked.
+    centre_mm : float
+        Place of the cut's middle along the tube, from the clamped end.
+    stretch_fe : float or None
+        Largest principal stretch of the rubber at the joint, by finite elements.
     """
 
     number: int
@@ -164,7 +177,29 @@ class Sensitivity:
 
 @dataclass(frozen=True)
 class Design:
-    """A whole actuator: what design.json holds."""
+    """A whole actuator: what design.json holds.
+
+    Attributes
+    ----------
+    source : Source
+    tube : Tube
+    gauze : Gauze
+    formula : FormulaRef
+    pressure_bar : float
+        Operating pressure, one for the whole tube.
+    joints : tuple of Joint
+    base_pose : Pose
+        Of the object-facing line at the clamped end.
+    fit : Fit
+        Distances off the profile.
+    feasible, verified : bool
+        Whether it is within the limits; whether finite elements bent it up to its pressure.
+    warnings : tuple of str
+        What its user should know.
+    method : {"optimal", "paper"}
+    sensitivity : tuple of Sensitivity
+        Empty where finite elements did not verify it.
+    """
 
     source: Source
     tube: Tube

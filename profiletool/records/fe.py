@@ -9,7 +9,7 @@ from profiletool.records.units import FloatArray
 
 
 @dataclass(frozen=True)
-class Critical:
+class CriticalPoint:
     """Where the path of equilibria ends: ``kind`` is "limit point" or "bifurcation"."""
 
     kind: str
@@ -70,7 +70,7 @@ class Verification:
         At the asked pressures that were reached, in rising order.
     asked_bar : float
         The highest pressure asked for.
-    critical : Critical or None
+    critical : CriticalPoint or None
         What ended the path before that.
     elements, nodes, dofs, newton_iterations : int
     seconds : float
@@ -81,7 +81,7 @@ class Verification:
     rest: FeState
     states: tuple[FeState, ...]
     asked_bar: float
-    critical: Critical | None
+    critical: CriticalPoint | None
     elements: int
     nodes: int
     dofs: int

@@ -16,7 +16,7 @@ from profiletool.records.request import Request
 
 
 @dataclass(frozen=True)
-class Kind:
+class ValueKind:
     """What an option holds.
 
     Attributes
@@ -37,24 +37,24 @@ class Kind:
     choices: tuple[str, ...] = ()
 
 
-def _number(unit: str) -> Kind:
-    return Kind(float, lambda value: f"{value:g}{unit}")
+def _number(unit: str) -> ValueKind:
+    return ValueKind(float, lambda value: f"{value:g}{unit}")
 
 
-def _pixels(count: int) -> Kind:
-    return Kind(tuple, lambda values: ",".join(f"{v:g}" for v in values) + " px", count)
+def _pixels(count: int) -> ValueKind:
+    return ValueKind(tuple, lambda values: ",".join(f"{v:g}" for v in values) + " px", count)
 
 
-def _choice(*choices: str) -> Kind:
-    return Kind(str, str, choices=choices)
+def _choice(*choices: str) -> ValueKind:
+    return ValueKind(str, str, choices=choices)
 
 
 _MM, _BAR, _PERCENT, _DEG = _number(" mm"), _number(" bar"), _number(" %"), _number("°")
-_RATIO, _COUNT = _number(""), Kind(int, str)
-_YES = Kind(bool, lambda value: "yes" if value else "no")
-_FILE = Kind(Path, lambda value: PurePath(value).name)
-_TURN = Kind(str, lambda value: value if value == "auto" else f"{value:g}°", count=1)
-_ROOT = Kind(float, lambda value: f"at least {value:g} mm")
+_RATIO, _COUNT = _number(""), ValueKind(int, str)
+_YES = ValueKind(bool, lambda value: "yes" if value else "no")
+_FILE = ValueKind(Path, lambda value: PurePath(value).name)
+_TURN = ValueKind(str, lambda value: value if value == "auto" else f"{value:g}°", count=1)
+_ROOT = ValueKind(float, lambda value: f"at least {value:g} mm")
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class Option:
         As the command line takes it; without its dashes the key in a TOML file.
     path : str
         Where its value stands in a `Request`.
-    kind : Kind
+    kind : ValueKind
     help : str
     above, least : float or None
         Bounds: the value is greater than ``above``, and at least ``least``.
@@ -82,7 +82,7 @@ class Option:
 
     flag: str
     path: str
-    kind: Kind
+    kind: ValueKind
     help: str
     above: float | None = None
     least: float | None = None

@@ -51,7 +51,7 @@ class Profile:
 
 
 @dataclass(frozen=True)
-class Drawing:
+class DrawnLine:
     """A drawn profile.
 
     Attributes

@@ -11,7 +11,7 @@ from profiletool.records.side import Side
 if TYPE_CHECKING:
     from formula.rubber import RubberLaw
     from profiletool.records.picture import Picture
-    from profiletool.records.profile import Drawing, Profile
+    from profiletool.records.profile import DrawnLine, Profile
 
 
 Box = tuple[float, float, float, float]  # x, y, width, height
@@ -46,9 +46,21 @@ INTERFERENCE_MM = 0.3  # how deep a straight piece of tube may lie in the object
 
 @dataclass(frozen=True)
 class TubeSpec:
-    """The tube and gauze that a design starts from, and what they may be asked for.
+    """The tube and gauze that a design starts from, and the limits that it must keep.
 
-    ``rubber`` is None for the paper's.
+    Attributes
+    ----------
+    outer_diameter_mm, wall_mm : float
+    root_mm : float
+        Least clamped length before the first joint's centre.
+    pitch_mm, thread_mm : float
+        Of the gauze: mesh pitch, diameter of a thread.
+    turns : int
+        How often the gauze is rolled around the tube.
+    max_pressure_bar, max_length_mm : float
+        Highest pressure; longest tube.
+    rubber : RubberLaw or None
+        None for the paper's silicone.
     """
 
     outer_diameter_mm: float = 20.0
@@ -97,11 +109,42 @@ Method = Literal["optimal", "paper"]
 
 @dataclass(frozen=True)
 class Request:
-    """What `design` was asked for.
+    """All that a design is asked for.
 
-    ``file`` is the picture or drawing to read; where one is ``given`` in its place, ``file`` is
-    only its name. ``tolerance_mm`` None stands for the method's own, ``alpha_step_deg`` None for
-    one thread.
+    Attributes
+    ----------
+    file : Path
+        The picture or drawing to read; only its name where one is ``given`` in its place.
+    scale : ScaleRequest
+    look : Look
+    side : {"left", "right"}
+        Of the object.
+    start_pct, end_pct : float
+        Stretch of that side's arc length from the top, %.
+    clearance_mm : float
+        Gap between tube and object.
+    tolerance_mm : float or None
+        RMS off the profile; None for the method's own.
+    joints : int or None
+        How many; None for as few as will do.
+    method : {"optimal", "paper"}
+    interference_mm : float
+        How deep the tube may lie in the object.
+    base_free : bool
+        Whether the base may leave the profile's start tangent.
+    alpha_step_deg : float or None
+        Step of alpha_closed; None for one thread, 0 for any value.
+    place_step_mm : float
+        Step of the joints' places; 0 for any value.
+    tube : TubeSpec
+    formula : Path or None
+        A formula file, or the name of one that comes along; None for the paper's.
+    extrapolate : bool
+        Whether the formula may be used beyond what it was fitted on.
+    verify, refine : bool
+        Whether finite elements verify the design, and correct it before.
+    given : Picture, DrawnLine, Profile or None
+        What a design is made from where there is no file.
     """
 
     file: Path
@@ -123,4 +166,4 @@ class Request:
     extrapolate: bool = False
     verify: bool = True
     refine: bool = True
-    given: Picture | Drawing | Profile | None = None
+    given: Picture | DrawnLine | Profile | None = None

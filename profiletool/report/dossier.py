@@ -13,7 +13,7 @@ from profiletool.records.frames import Shape
 from profiletool.report.asked import options_of
 from profiletool.report.plots import Mark
 from profiletool.report.scene import Scene
-from profiletool.report.tables import Option
+from profiletool.report.tables import AskedOption
 from profiletool.verify.check import Check
 
 
@@ -36,7 +36,7 @@ class Dossier:
     trade_off : TradeOff or None
     template_svg : str
         The cut template, as its file has it.
-    options : sequence of Option
+    options : sequence of AskedOption
         What was asked for.
     """
 
@@ -47,7 +47,7 @@ class Dossier:
     marks: Sequence[Mark]
     trade_off: TradeOff | None
     template_svg: str
-    options: Sequence[Option]
+    options: Sequence[AskedOption]
 
     @property
     def found(self) -> Verification | None:

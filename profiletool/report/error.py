@@ -22,7 +22,7 @@ _APART = 4.0  # times as large: a curve that would flatten the others
 
 
 @dataclass(frozen=True)
-class Curve:
+class ErrorCurve:
     """Signed distance (mm) over the profile's arc length (mm), (M,) each, and how it is drawn."""
 
     label: str
@@ -75,7 +75,7 @@ def error_figure(scene: Scene, by_formula: Shape, title: str = "") -> Figure:
     return figure
 
 
-def _curves(scene: Scene, by_formula: Shape) -> list[Curve]:
+def _curves(scene: Scene, by_formula: Shape) -> list[ErrorCurve]:
     """Gather what is known, the most believable last."""
     fit: Fit = scene.design.fit
     rows: list[tuple[str, Shape | None, Misfit | None, str, Any, float]] = [
@@ -84,7 +84,7 @@ def _curves(scene: Scene, by_formula: Shape) -> list[Curve]:
         ("finite elements", scene.fe, fit.fe, PURPLE, "-", 2.2),
     ]
     return [
-        Curve(
+        ErrorCurve(
             f"{by}: {off.rms_mm:.2f} mm RMS, {off.max_mm:.2f} mm at most",
             gap_along(shape, scene.profile)[1],
             colour,

@@ -27,7 +27,7 @@ _SUBSTEPS = 24  # of the slider, between two pressures of FE
 
 
 @dataclass(frozen=True)
-class Frame:
+class StageFrame:
     """The visible part of the plane: mm, x to the right, y up."""
 
     x0: float
@@ -136,7 +136,7 @@ def _gauge(film: Film) -> Markup:
     return tag("span", tag("span", f"{film.pressure_bar[-1]:.2f}", class_="bar"), " bar")
 
 
-def frame_of(scene: Scene, film: Film) -> Frame:
+def frame_of(scene: Scene, film: Film) -> StageFrame:
     """Find room for all that is drawn, and a margin."""
     parts = [
         film.lines.reshape(-1, 2) * [0.01, -0.01],
@@ -147,7 +147,7 @@ def frame_of(scene: Scene, film: Film) -> Frame:
         parts.append(scene.profile.outline)
     points = np.concatenate(parts)
     (x0, y0), (x1, y1) = points.min(axis=0) - _MARGIN_MM, points.max(axis=0) + _MARGIN_MM
-    return Frame(float(x0), float(y0) - 0.5 * _MARGIN_MM, float(x1), float(y1))
+    return StageFrame(float(x0), float(y0) - 0.5 * _MARGIN_MM, float(x1), float(y1))
 
 
 def _told(scene: Scene, film: Film, by_fe: bool) -> str:
@@ -160,7 +160,7 @@ def _colour(scene: Scene, by_fe: bool) -> str:
     return "fe" if by_fe else "response" if scene.by == "joint response" else "formula"
 
 
-def _object(scene: Scene, frame: Frame) -> Iterator[Markup]:
+def _object(scene: Scene, frame: StageFrame) -> Iterator[Markup]:
     outline = scene.profile.outline
     closed = None if outline is None else path(drawn(_simple(outline))) + "Z"
     if scene.backdrop is not None:
@@ -172,7 +172,7 @@ def _object(scene: Scene, frame: Frame) -> Iterator[Markup]:
         yield _line("silhouette", closed)
 
 
-def _picture(backdrop: Backdrop, frame: Frame) -> Iterator[Markup]:
+def _picture(backdrop: Backdrop, frame: StageFrame) -> Iterator[Markup]:
     """Embed what the stage shows of the picture."""
     left, right, bottom, top = backdrop.extent
     height, width = backdrop.rgb.shape[:2]
@@ -202,7 +202,7 @@ def _tube(film: Film, colour: str) -> Iterator[Markup]:
         yield tag("path", class_=f"window {colour}", d=film.window(k), data_window=str(k))
 
 
-def _clamp(straight: Shape, frame: Frame) -> Iterator[Markup]:
+def _clamp(straight: Shape, frame: StageFrame) -> Iterator[Markup]:
     """Draw the clamp behind the tube's clamped end, as drawings show what is fixed."""
     near, far = straight.facing[0], straight.far[0]
     out = (far - near) / np.hypot(*(far - near))
@@ -215,7 +215,7 @@ def _clamp(straight: Shape, frame: Frame) -> Iterator[Markup]:
     yield _line("clamped", path(drawn(np.stack([a, b]))))
 
 
-def _hatch(frame: Frame) -> Markup:
+def _hatch(frame: StageFrame) -> Markup:
     step = 0.35 * frame.em
     pattern = tag(
         "pattern", tag("path", class_="hatch", d=f"M0,0V{step:.2f}"), id="hatch",
@@ -236,7 +236,7 @@ def _profile(scene: Scene) -> Iterator[Markup]:
             yield _line("missed", path(drawn(_simple(profile.points[within]))))
 
 
-def _numbers(scene: Scene, film: Film, frame: Frame) -> Iterator[Markup]:
+def _numbers(scene: Scene, film: Film, frame: StageFrame) -> Iterator[Markup]:
     """Write the joints' numbers in the middle of the tube, where nothing else is."""
     centres = [joint.centre_mm for joint in scene.design.joints]
     room = min(np.diff(centres).tolist(), default=np.inf)
@@ -252,7 +252,7 @@ def _numbers(scene: Scene, film: Film, frame: Frame) -> Iterator[Markup]:
         yield tag("g", badge, transform=f"translate({x} {y})", data_joint=str(k))
 
 
-def _scale_bar(frame: Frame) -> Iterator[Markup]:
+def _scale_bar(frame: StageFrame) -> Iterator[Markup]:
     most = (frame.x1 - frame.x0) / 4.0
     length = max(mm for mm in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0) if mm <= max(most, 1.0))
     x, y = frame.x0 + 0.5 * _MARGIN_MM, -frame.y0 - 0.5 * _MARGIN_MM

@@ -20,7 +20,7 @@ _NOTHING = "–"
 
 
 @dataclass(frozen=True)
-class Option:
+class AskedOption:
     """An option of the command: its value, and the value where it is not given."""
 
     name: str
@@ -133,7 +133,9 @@ def _seen(source: Source) -> Iterator[tuple[str, str]]:
         yield "Sides", "the mean of both"
 
 
-def provenance(design: Design, found: Verification | None, options: Sequence[Option]) -> Markup:
+def provenance(
+    design: Design, found: Verification | None, options: Sequence[AskedOption]
+) -> Markup:
     """Tabulate what the design was made from, and how; ``options`` are those asked for."""
     source, formula = design.source, design.formula
     scale = "in mm already" if source.mm_per_px is None else scale_text(source, digits=6)
@@ -160,7 +162,7 @@ def provenance(design: Design, found: Verification | None, options: Sequence[Opt
         )
         for option in options
     ]
-    heads = ("Option", "asked", "default")
+    heads = ("AskedOption", "asked", "default")
     return joined((pairs(rows), table(heads, asked, "What was asked for", "words")))
 
 

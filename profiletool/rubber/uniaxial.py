@@ -26,7 +26,7 @@ _TRUE = re.compile("true|cauchy")
 
 
 @dataclass(frozen=True)
-class Fit:
+class UniaxialFit:
     """A law and how well it follows the test.
 
     Attributes
@@ -85,8 +85,8 @@ def uniaxial_stress(law: Law, stretch: ArrayLike) -> FloatArray:
     return axial
 
 
-def fit_uniaxial(stretch: ArrayLike, stress_MPa: ArrayLike, nu: float) -> Fit:
-    """Fit C10, C01 >= 0 to nominal stress against stretch by least squares.
+def fit_uniaxial(stretch: ArrayLike, stress_MPa: ArrayLike, nu: float) -> UniaxialFit:
+    """UniaxialFit C10, C01 >= 0 to nominal stress against stretch by least squares.
 
     The curve is that of `uniaxial_stress`, so that a test of the very law comes out exactly. At a
     given nu it is C10 + C01 times a curve that only the share of C01 shapes; the best sum is then
@@ -137,7 +137,7 @@ def fit_uniaxial(stretch: ArrayLike, stress_MPa: ArrayLike, nu: float) -> Fit:
             "check the unit of the stress (MPa, or kPa in the header)"
         )
     variance = float(np.mean((measured - measured.mean()) ** 2))
-    return Fit(
+    return UniaxialFit(
         law=MooneyRivlin.from_poisson(scale * (1.0 - share), scale * share, nu),
         points=lam.size,
         stretch_range=(float(lam[0]), float(lam[-1])),

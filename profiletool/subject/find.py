@@ -14,7 +14,7 @@ from profiletool.profile.drawing.load import SUFFIXES, load_vector
 from profiletool.profile.side import top_middle
 from profiletool.profile.target import Reach, profile_of_line, profile_of_object
 from profiletool.records.picture import Picture, Scale, Silhouette
-from profiletool.records.profile import Drawing, Profile
+from profiletool.records.profile import DrawnLine, Profile
 from profiletool.records.request import Look, Request, ScaleRequest
 from profiletool.records.side import Side
 from profiletool.subject.photo import changed, see, turn_of
@@ -28,10 +28,21 @@ _WRONG_SCALE = {
 
 @dataclass(frozen=True)
 class Subject:
-    """The object that a design is for; picture, silhouette and origin only where there is one.
+    """The object that a design is for.
 
-    ``origin_px`` is the object frame's origin once the picture is turned by ``rotated_deg``,
-    counter-clockwise about its middle. ``notes`` say what the user should know of how it was seen.
+    Attributes
+    ----------
+    picture : Picture or None
+    silhouette : Silhouette or None
+        None, as the picture, for a drawing.
+    scale : Scale
+    origin_px : (x, y) or None
+        The object frame's origin in the picture once that is turned.
+    profile : Profile
+    rotated_deg : float
+        By which the picture is turned, counter-clockwise about its middle.
+    notes : tuple of str
+        What the user should know of how the picture was read.
     """
 
     picture: Picture | None
@@ -62,7 +73,7 @@ def find_subject(request: Request, say: Callable[[str], None]) -> Subject:
         return Subject(None, None, Scale(1.0, "vector"), None, given)
     if given is None and request.file.suffix.lower() in SUFFIXES:
         given = load_vector(request.file)
-    if isinstance(given, Drawing):
+    if isinstance(given, DrawnLine):
         return _drawn_subject(request, given, reach, say)
     picture = load_picture(request.file) if given is None else given
     seen = see(picture, request.scale, request.look, say)
@@ -87,7 +98,7 @@ def find_subject(request: Request, say: Callable[[str], None]) -> Subject:
 
 
 def _drawn_subject(
-    request: Request, drawn: Drawing, reach: Reach, say: Callable[[str], None]
+    request: Request, drawn: DrawnLine, reach: Reach, say: Callable[[str], None]
 ) -> Subject:
     look, points = request.look, drawn.points
     if not drawn.closed and (look.rotate == "auto" or look.symmetric):

@@ -36,7 +36,7 @@ PLAIN = Wish()
 
 
 @dataclass(frozen=True)
-class Kind:
+class TemplateKind:
     """What a kind of template says.
 
     Attributes
@@ -63,8 +63,8 @@ class Kind:
     tab_mm: float = 0.0
 
 
-KINDS: dict[Variant, Kind] = {
-    "gauze": Kind(
+KINDS: dict[Variant, TemplateKind] = {
+    "gauze": TemplateKind(
         title="Cut template",
         piece="Gauze",
         start="Start edge: glue to tube",
@@ -81,7 +81,7 @@ KINDS: dict[Variant, Kind] = {
             _WELD,
         ),
     ),
-    "sleeve": Kind(
+    "sleeve": TemplateKind(
         title="Sleeve template",
         piece="Sleeve, cut open",
         start="Start edge: on the sleeve's seam line",
@@ -98,7 +98,7 @@ KINDS: dict[Variant, Kind] = {
             "Fasten both ends. It must neither turn nor slide.",
         ),
     ),
-    "strip": Kind(
+    "strip": TemplateKind(
         title="Marking strip",
         piece="Paper",
         start="Start edge: on the weld line",

@@ -11,7 +11,7 @@ import numpy as np
 from profiletool.joints.windows import FULL_CIRCLE, SeamChoice
 from profiletool.records.design import Joint
 from profiletool.template.drawing import Line, Text, arrow, polyline
-from profiletool.template.kinds import Kind
+from profiletool.template.kinds import TemplateKind
 from profiletool.template.labels import margin_numbers
 from profiletool.template.unroll import Roll
 
@@ -35,7 +35,7 @@ class Margins:
 
 
 def margins(
-    joints: Sequence[Joint], length_mm: float, roll: Roll, kind: Kind, seam: SeamChoice
+    joints: Sequence[Joint], length_mm: float, roll: Roll, kind: TemplateKind, seam: SeamChoice
 ) -> Margins:
     """Return all marks around a piece of some length along the tube."""
     size = length_mm, roll.length_mm + kind.tab_mm
@@ -70,7 +70,7 @@ def gaps(joints: Sequence[Joint], length: float, clearance: float) -> list[tuple
 
 
 def _register_line(
-    joints: Sequence[Joint], length: float, roll: Roll, kind: Kind, seam: SeamChoice
+    joints: Sequence[Joint], length: float, roll: Roll, kind: TemplateKind, seam: SeamChoice
 ) -> Drawn:
     """Return the line that an edge comes to lie on, open where cuts cross it."""
     turns = roll.turns if kind.tab_mm else roll.turns - 1
@@ -90,7 +90,7 @@ def _register_line(
     return lines, (replace(name, y=least),)
 
 
-def _edge_names(size: tuple[float, float], away: float, kind: Kind) -> Drawn:
+def _edge_names(size: tuple[float, float], away: float, kind: TemplateKind) -> Drawn:
     """Return what stands ``away`` above the end edge and below the start edge."""
     x, height = size[0] / 2, EDGE_TEXT_MM
     above = Text("MARK", kind.end, x, size[1] + away, height, "centre")

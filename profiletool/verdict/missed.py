@@ -43,7 +43,7 @@ class Missed:
     reason: str
 
 
-def tightest_radius(model: Model, material: TubeSpec, pressure: float, sense: float) -> float:
+def tightest_radius(model: Model, spec: TubeSpec, pressure: float, sense: float) -> float:
     """Give the least radius of an arc that joints in a row follow, mm.
 
     The circle that touches the wrapped sectors of equal joints, as close to each other as they
@@ -52,13 +52,13 @@ def tightest_radius(model: Model, material: TubeSpec, pressure: float, sense: fl
     Parameters
     ----------
     model : Model
-    material : TubeSpec
+    spec : TubeSpec
     pressure : float, MPa
     sense : float
         +1 toward the object, -1 away from it.
     """
-    bends = tabulate(model, pressure, cuts_of(model, material), sense)
-    wrap = 0.5 * wrap_mm(material)
+    bends = tabulate(model, pressure, cuts_of(model, spec), sense)
+    wrap = 0.5 * wrap_mm(spec)
     radii = [np.inf]
     for least, most, reach in zip(bends.least, bends.most, bends.reach, strict=True):
         if most > least:
@@ -71,7 +71,7 @@ def missed(
     profile: Profile,
     choice: Choice,
     model: Model,
-    material: TubeSpec,
+    spec: TubeSpec,
     tolerance_mm: float,
     place: Callable[[float], str] | None = None,
 ) -> tuple[Missed, ...]:
@@ -84,10 +84,10 @@ def missed(
     s = np.linspace(0.0, profile.length_mm, len(points))
     off = np.abs(closest_points(choice.shape.facing, points, profile.sign).distance)
     most = choice.limits.pressure[1]
-    radii = {sense: tightest_radius(model, material, most, sense) for sense in _SENSES}
+    radii = {sense: tightest_radius(model, spec, most, sense) for sense in _SENSES}
     tip = np.hypot(*(points - choice.shape.facing[-1]).T)
     # As much more tube as the last point is away would be too much.
-    short = choice.chain.length + tip[-1] > material.max_length_mm + _SLACK_MM
+    short = choice.chain.length + tip[-1] > spec.max_length_mm + _SLACK_MM
     results = []
     for first, last in _runs(off > FAR_OFF * tolerance_mm):
         start, end, worst = float(s[first]), float(s[last]), float(off[first : last + 1].max())
@@ -95,7 +95,7 @@ def missed(
         ends = last == len(s) - 1 and short and tip[last] <= off[last] + _SLACK_MM
         if ends:
             why = (
-                f"the tube ends here: it may be {material.max_length_mm:g} mm long, and the "
+                f"the tube ends here: it may be {spec.max_length_mm:g} mm long, and the "
                 f"profile is {profile.length_mm:.0f} mm; take a shorter stretch "
                 "(`start_pct`, `end_pct`) or raise `max_length_mm`"
             )
@@ -110,16 +110,16 @@ def reasons(
     profile: Profile,
     choice: Choice,
     model: Model,
-    material: TubeSpec,
+    spec: TubeSpec,
     tolerance_mm: float,
     place: Callable[[float], str] | None = None,
 ) -> tuple[str, ...]:
     """Reasons why a profile cannot be followed to the tolerance; none where it is."""
-    texts = [m.reason for m in missed(profile, choice, model, material, tolerance_mm, place)]
-    if choice.chain.length > material.max_length_mm + _SLACK_MM:
+    texts = [m.reason for m in missed(profile, choice, model, spec, tolerance_mm, place)]
+    if choice.chain.length > spec.max_length_mm + _SLACK_MM:
         texts.append(
             f"the tube would be {choice.chain.length:.1f} mm long, more than "
-            f"{material.max_length_mm:g} mm; shorten the stretch (`start_pct`, `end_pct`), or "
+            f"{spec.max_length_mm:g} mm; shorten the stretch (`start_pct`, `end_pct`), or "
             "raise `max_length_mm`"
         )
     if choice.misfit.rms_mm > tolerance_mm and not texts:

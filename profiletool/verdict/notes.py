@@ -20,7 +20,7 @@ from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
 from profiletool.records.request import TubeSpec
 from profiletool.subject.find import drawing_notes
-from profiletool.verdict.attempt import Attempt
+from profiletool.verdict.draft import Draft
 from profiletool.verdict.missed import Missed
 from profiletool.verify.check import Check
 
@@ -32,7 +32,7 @@ SLACK = 0.05  # mm or deg that nobody can see
 DEPTH_MM = 1.0  # a tube that presses deeper into the object is warned of
 
 
-def notes_of(attempt: Attempt, reasons: Sequence[str], misses: Sequence[Missed]) -> tuple[str, ...]:
+def notes_of(attempt: Draft, reasons: Sequence[str], misses: Sequence[Missed]) -> tuple[str, ...]:
     """Everything that the user should know of a design, the reasons against it first."""
     design, request = attempt.design, attempt.request
     apart = (place.reason for place in misses if place.reason not in reasons)
@@ -55,7 +55,7 @@ def warnings(
     profile: Profile,
     fit: Misfit,
     tolerance_mm: float,
-    material: TubeSpec,
+    spec: TubeSpec,
     formula: Formula,
     verified: bool,
 ) -> tuple[str, ...]:
@@ -64,7 +64,7 @@ def warnings(
     ``fit`` is that of FE where it has ``verified`` the design, else the formula's.
     """
     found = []
-    if material.max_pressure_bar > formula.pressure_range_bar[1]:
+    if spec.max_pressure_bar > formula.pressure_range_bar[1]:
         found.append(
             f'formula "{formula.name}" ends at {formula.pressure_range_bar[1]:g} bar: '
             "no higher pressure was considered"
@@ -178,7 +178,7 @@ def named(numbers: Iterable[int]) -> str:
     return f"joints {', '.join(words[:-1])} and {words[-1]}"
 
 
-def _method_notes(attempt: Attempt) -> Iterator[str]:
+def _method_notes(attempt: Draft) -> Iterator[str]:
     """Tell how the joints were chosen, where the user should know."""
     request, plan, design = attempt.request, attempt.plan, attempt.design
     if request.method == "paper":

@@ -15,7 +15,7 @@ from profiletool.joints.paper.sectors import BendingSector
 from profiletool.records.design import Design
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request, TubeSpec
-from profiletool.verdict.attempt import Attempt
+from profiletool.verdict.draft import Draft
 from profiletool.verdict.missed import Missed, missed
 from profiletool.verdict.notes import SLACK
 
@@ -23,7 +23,7 @@ GOOD_SHARE = 0.01  # of the profile's length: RMS of a shape that is called good
 _SLACK_MM = 0.05  # that nobody can see
 
 
-def reasons_of(attempt: Attempt, misses: Sequence[Missed]) -> tuple[str, ...]:
+def reasons_of(attempt: Draft, misses: Sequence[Missed]) -> tuple[str, ...]:
     """Reasons why an attempt is infeasible; none where it is a design that can be built."""
     request, plan, profile = attempt.request, attempt.plan, attempt.profile
     if plan.rules is None:
@@ -39,7 +39,7 @@ def shortfalls(
     sectors: Sequence[BendingSector],
     layout: Layout,
     rules: Rules,
-    material: TubeSpec,
+    spec: TubeSpec,
     formula: Formula,
     count: int | None,
     place: Callable[[float], str],
@@ -50,7 +50,7 @@ def shortfalls(
     user chose, not a limit. ``place`` says in words where an arc length on the profile is.
     """
     reasons = []
-    tube = (material.outer_diameter_mm, material.wall_mm)
+    tube = (spec.outer_diameter_mm, spec.wall_mm)
     if tube != (formula.outer_diameter_mm, formula.wall_mm):
         reasons.append(
             f'formula "{formula.name}" holds for a tube of {formula.outer_diameter_mm:g} mm with '
@@ -62,10 +62,10 @@ def shortfalls(
     for number, sector in enumerate(sectors, start=1):
         found = [*_missing(sector, rules), *(_off(sector, rules) if count is None else ())]
         reasons += [f"joint {number}, {place(sector.centre)}: {what}" for what in found]
-    if layout.length_mm > material.max_length_mm + SLACK:
+    if layout.length_mm > spec.max_length_mm + SLACK:
         reasons.append(
             f"the tube would be {layout.length_mm:.1f} mm long, more than "
-            f"{material.max_length_mm:g} mm; shorten `root_mm` or the stretch (`start_pct`, "
+            f"{spec.max_length_mm:g} mm; shorten `root_mm` or the stretch (`start_pct`, "
             "`end_pct`), or raise `max_length_mm`"
         )
     return tuple(reasons)
@@ -116,7 +116,7 @@ def placer(request: Request, profile: Profile) -> Callable[[float], str]:
     return place
 
 
-def misses_of(attempt: Attempt) -> tuple[Missed, ...]:
+def misses_of(attempt: Draft) -> tuple[Missed, ...]:
     """Stretches of the profile that an optimal plan's bent shape misses, each with its cause."""
     plan, profile, request = attempt.plan, attempt.profile, attempt.request
     if plan.choice is None or plan.model is None:

@@ -30,8 +30,8 @@ from profiletool.verify.tube import tube_of
 class FeForwardModel:
     """A forward model by finite elements of the whole actuator."""
 
-    def __init__(self, material: TubeSpec) -> None:
-        self._material = material
+    def __init__(self, spec: TubeSpec) -> None:
+        self._spec = spec
         self._rates: tuple[Solution, Sensitivities] | None = None  # the last ones found
 
     def bend(
@@ -39,7 +39,7 @@ class FeForwardModel:
     ) -> tuple[Shape, Solution]:
         """Bend an actuator, from a similar one's state where that leads there."""
         try:
-            tube = tube_of(posed.chain, self._material)
+            tube = tube_of(posed.chain, self._spec)
             solution = self._solved(tube, near, posed.pressure)
         except NotConverged as error:
             raise CannotBend(shortly(error), error.reached) from error

@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fem.actuator import Actuator
-from fem.equilibrium import Critical as FemCritical
+from fem.equilibrium import Critical
 from fem.errors import NotConverged
 from fem.mesh import Mesh
 from fem.solution import Solution, State
 from fem.solver import solve
 from profiletool.records.design import Design
-from profiletool.records.fe import Critical, FeState, Verification
+from profiletool.records.fe import CriticalPoint, FeState, Verification
 from profiletool.records.frames import Pose
 from profiletool.records.side import side_sign
 from profiletool.records.units import BAR_PER_MPA, FloatArray
@@ -145,9 +145,9 @@ def shortly(error: NotConverged) -> str:
     return f"no equilibrium found beyond {BAR_PER_MPA * error.reached:.2f} bar"
 
 
-def ended(critical: FemCritical) -> Critical:
+def ended(critical: Critical) -> CriticalPoint:
     """Give what ended a run in bar."""
-    return Critical(critical.kind, BAR_PER_MPA * critical.pressure)
+    return CriticalPoint(critical.kind, BAR_PER_MPA * critical.pressure)
 
 
 def reason(found: Verification) -> str:
@@ -155,7 +155,7 @@ def reason(found: Verification) -> str:
     return said(found.critical) if found.critical is not None else found.failure or ""
 
 
-def said(critical: Critical) -> str:
+def said(critical: CriticalPoint) -> str:
     """Say what ended a run."""
     return f"{critical.kind} at {critical.pressure_bar:.2f} bar"
 

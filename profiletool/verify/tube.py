@@ -37,7 +37,7 @@ def actuator_of(design: Design) -> Actuator:
     return _tube(tube.length_mm, windows, tube, gauze)
 
 
-def tube_of(chain: Chain, material: TubeSpec) -> Actuator:
+def tube_of(chain: Chain, spec: TubeSpec) -> Actuator:
     """Model a chain of joints before it is a design.
 
     Raises
@@ -49,7 +49,7 @@ def tube_of(chain: Chain, material: TubeSpec) -> Actuator:
         Window(*(float(number) for number in joint))
         for joint in zip(chain.centre, chain.openF, chain.alpha, chain.alpha_center, strict=True)
     )
-    return _tube(chain.length, windows, material, material)
+    return _tube(chain.length, windows, spec, spec)
 
 
 def _tube(
@@ -70,13 +70,13 @@ def _tube(
 
 
 def joint_actuator(
-    openF_mm: float, alpha_deg: float, center_deg: float, material: TubeSpec
+    openF_mm: float, alpha_deg: float, center_deg: float, spec: TubeSpec
 ) -> Actuator:
     """Model one joint as the paper does: Root = F1 = 30 mm."""
     return chain(
         30.0, [30.0], [openF_mm], [float(np.radians(alpha_deg))], [float(np.radians(center_deg))],
-        diameter=material.outer_diameter_mm, wall=material.wall_mm,
-        rubber=law_of(material.rubber),
+        diameter=spec.outer_diameter_mm, wall=spec.wall_mm,
+        rubber=law_of(spec.rubber),
     )  # fmt: skip
 
 

@@ -17,6 +17,7 @@ from profiletool.campaign.response_kind import RESPONSE_RUN, from_json, key, run
 from profiletool.campaign.response_runs import run_group
 from profiletool.campaign.response_tasks import actuators, pairs, singles
 from profiletool.campaign.store import Store
+from profiletool.verify.run import inflate
 
 RADIUS = 10.0
 
@@ -84,7 +85,7 @@ def test_lines_come_back_to_the_last_bit():
     again = from_json(to_json(arc))
     assert same(again, arc)
     assert (again.name, again.ended) == ("arc", "limit point at 1.00 bar")
-    for name in ("centre", "openF", "alpha", "sense"):
+    for name in ("centre", "openF", "alpha", "alpha_center"):
         assert_array_equal(getattr(again.chain, name), getattr(arc.chain, name))
     assert again.chain.length == 81.0
     nothing = RESPONSE_RUN.died(a_task())
@@ -120,7 +121,7 @@ def test_every_task_of_the_campaign_has_a_key_of_its_own():
         replace(task, pressures_bar=task.pressures_bar[:-1]),
         *(
             replace(task, chain=replace(task.chain, **{name: getattr(task.chain, name) * 1.001}))
-            for name in ("centre", "openF", "alpha", "sense", "length")
+            for name in ("centre", "openF", "alpha", "alpha_center", "length")
         ),
     ]
     assert len({key(other) for other in [task, *others]}) == len(others) + 1
@@ -152,17 +153,25 @@ def test_real_lines_are_the_same_bit_for_bit_on_processes(tmp_path):
 
 
 def test_what_does_not_converge(monkeypatch):
-    asked = []
+    asked = replace(a_task(), pressures_bar=(0.2, 0.4))
 
-    def stuck(actuator, pressures, *_, **__):
-        asked.append(pressures)
-        raise NotConverged("", (), 0.05 if len(asked) == 1 else 0.0)
+    def stuck(actuator, pressures, *rest, **more):
+        whole = inflate(actuator, pressures[:1], *rest, **more)
+        why = "no equilibrium found beyond 0.31 bar"
+        return replace(whole, verification=replace(whole.verification, failure=why))
 
     monkeypatch.setattr(response_kind, "inflate", stuck)
-    lines = run(replace(a_task(), pressures_bar=(0.2, 0.4, 0.6)))
-    assert asked == [(0.2, 0.4, 0.6), (0.2, 0.4)]
+    reached = run(asked)
+    assert reached.pressure.tolist() == [0.02]
+    assert reached.ended == "no equilibrium found beyond 0.31 bar"
+
+    def never(*_, **__):
+        raise NotConverged("", (), 0.0)
+
+    monkeypatch.setattr(response_kind, "inflate", never)
+    lines = run(asked)
     assert len(lines.pressure) == 0
-    assert lines.ended == "not converged beyond 0.00 bar"
+    assert lines.ended == "no equilibrium found beyond 0.00 bar"
 
 
 @pytest.mark.slow

@@ -11,15 +11,11 @@ import pytest
 from PIL import Image
 
 from profiletool.files.design_json import load_design
+from profiletool.profile.upright import turned
 from profiletool.subject.recall import target_of
 from tests.calls import call, error_of
-from tests.cli.test_design import picture, unverified
-from tests.subject.test_photo import PEAR, csv, drawn, turned
-
-
-@pytest.fixture(autouse=True)
-def in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+from tests.cli.inputs import picture, unverified
+from tests.subject.objects import PEAR, csv, drawn
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""Several processes in one place, killed ones, full disks: a whole folder or none, never a mix."""
+"""Several processes in one place, and killed ones: a whole folder or none, never a mix."""
 
 from __future__ import annotations
 
@@ -10,82 +10,14 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from profiletool.errors import OutputError, UsageError
 from profiletool.files import workfolder, write
-from profiletool.files.write import check_file, check_free, write_file, write_folder
-
-ROOT = Path(__file__).resolve().parents[2]
-FILES = 12
-
-# Writes folders, or files, that tell whose they are; argv: place, whose, times, force, file.
-WRITER = """
-import sys
-from pathlib import Path
-from profiletool.errors import ProfiletoolError
-from profiletool.files.write import write_file, write_folder
-place, whose, times, force, as_file = Path(sys.argv[1]), sys.argv[2], *map(int, sys.argv[3:])
-print("ready", flush=True)
-sys.stdin.readline()
-for turn in range(times):
-    data = f"{whose} {turn} ".encode() * 2000
-    try:
-        if as_file:
-            write_file(place, data, bool(force))
-        else:
-            names = ["design.json", *(f"{n}.txt" for n in range(11))]
-            write_folder(place, dict.fromkeys(names, data), bool(force))
-    except ProfiletoolError as error:
-        sys.exit(f"{error.exit_code} {error}")
-"""
-
-
-class Writer:
-    """A process that writes as soon as it is told to."""
-
-    def __init__(
-        self, place: Path, whose: object, times: int, *, force: bool, as_file: bool = False
-    ) -> None:
-        words = [str(place), str(whose), str(times), str(int(force)), str(int(as_file))]
-        self.process = subprocess.Popen(
-            [sys.executable, "-c", WRITER, *words],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-            env={**os.environ, "PYTHONPATH": str(ROOT)},
-        )  # fmt: skip
-        assert self.process.stdout is not None
-        assert self.process.stdout.readline() == "ready\n"
-
-    def start(self) -> None:
-        assert self.process.stdin is not None
-        self.process.stdin.write("\n")
-        self.process.stdin.flush()
-
-    def end(self) -> str:
-        """What it says on stderr."""
-        return self.process.communicate(timeout=60)[1].strip()
-
-
-def race(writers: list[Writer]) -> list[str]:
-    for writer in writers:
-        writer.start()
-    return [writer.end() for writer in writers]
-
-
-def whole(folder: Path) -> bytes:
-    """The content that all files of a folder share."""
-    names = {path.name for path in folder.iterdir()}
-    assert names == {"design.json", *(f"{n}.txt" for n in range(FILES - 1))}
-    (content,) = {path.read_bytes() for path in folder.iterdir()}
-    assert len(content) > 2000
-    return content
-
-
-def leftovers(folder: Path) -> list[str]:
-    return sorted(path.name for path in folder.iterdir() if path.name.startswith("."))
+from profiletool.files.write import check_free, write_folder
+from tests.files.writers import FILES, ROOT, Writer, leftovers, race, whole
 
 
 def test_without_force_the_first_stays_and_the_others_are_refused(tmp_path: Path) -> None:
@@ -332,76 +264,6 @@ def test_what_comes_in_between_is_not_lost(
         write_folder(out, {"design.json": b"1"}, force)
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
     assert (out / "thesis.tex").read_text() == "years of work"
-
-
-def full_disk(monkeypatch: pytest.MonkeyPatch, after: int) -> None:
-    write_file = write._write
-    written: list[Path] = []
-
-    def writing(path: Path, data: bytes) -> None:
-        if len(written) == after:
-            path.write_bytes(data[:1])
-            raise OSError(errno.ENOSPC, "No space left on device")
-        write_file(path, data)
-        written.append(path)
-
-    monkeypatch.setattr(write, "_write", writing)
-
-
-@pytest.mark.parametrize("after", [0, 1, 2])
-@pytest.mark.parametrize("earlier", [False, True])
-def test_a_full_disk(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, after: int, earlier: bool
-) -> None:
-    out = tmp_path / "out"
-    if earlier:
-        write_folder(out, {"design.json": b"old"}, force=False)
-    full_disk(monkeypatch, after)
-    with pytest.raises(OutputError, match="No space left"):
-        write_folder(out, dict.fromkeys(["design.json", "a", "b"], b"new"), force=True)
-    assert [path.name for path in tmp_path.iterdir()] == (["out"] if earlier else [])
-    assert not earlier or (out / "design.json").read_bytes() == b"old"
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="limits of POSIX")
-def test_a_quota(tmp_path: Path) -> None:
-    limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (5000, 5000))\n"
-    done = subprocess.run(
-        [sys.executable, "-c", limit + WRITER, str(tmp_path / "out"), "a", "1", "0", "0"],
-        input="\n", capture_output=True, text=True, timeout=60, check=False,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-    )  # fmt: skip
-    assert done.stderr.startswith("1 cannot write")
-    assert "Traceback" not in done.stderr
-    assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.parametrize("check", [check_free, check_file])
-def test_a_place_that_cannot_be_is_refused_at_once(
-    tmp_path: Path, check: Callable[[Path, bool], None]
-) -> None:
-    (tmp_path / "file").write_text("mine")
-    with pytest.raises(OutputError, match="is no folder"):
-        check(tmp_path / "file" / "deep" / "out", False)
-    with pytest.raises(OutputError, match="is no folder"):
-        write_file(tmp_path / "file" / "out", b"", force=False)
-
-
-def test_a_folder_that_is_read_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(os, "access", lambda *_: False)  # root may write anywhere
-    with pytest.raises(OutputError, match="no permission"):
-        check_free(tmp_path / "deep" / "out", force=False)
-    assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.skipif(not hasattr(os, "getuid") or os.getuid() == 0, reason="root may write anywhere")
-def test_a_folder_that_is_read_only_in_earnest(tmp_path: Path) -> None:
-    tmp_path.chmod(0o500)
-    try:
-        with pytest.raises(OutputError, match="no permission"):
-            write_folder(tmp_path / "out", {"design.json": b""}, force=False)
-    finally:
-        tmp_path.chmod(0o700)
 
 
 @pytest.mark.slow

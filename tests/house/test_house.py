@@ -9,22 +9,10 @@ import pytest
 from tests.house.measures import Measures, measures, node_lines, parameters
 
 # To be split when they are next worked on; nothing may be added here.
-LONG_FILES = {"profiletool/campaign/response_fit.py"}
-LONG_FUNCTIONS = {
-    "fem/solid.py:respond",
-    "fem/solve.py:solve",
-    "fem/solve.py:solve_near",
-    "profiletool/cli/derive.py:derive",
-    "profiletool/cli/design.py:design",
-}
+LONG_FILES: set[str] = set()
+LONG_FUNCTIONS: set[str] = set()
 # Commands have a parameter for each option.
-COMMANDS = {
-    "profiletool/cli/derive.py:derive",
-    "profiletool/cli/design.py:design",
-    "profiletool/cli/fe.py:joint",
-    "profiletool/cli/template.py:template",
-}
-WIDE_FUNCTIONS: set[str] = set()
+COMMANDS = {"profiletool/cli/fe.py:joint", "profiletool/cli/template.py:template"}
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +22,7 @@ def found() -> Measures:
 
 def test_the_way_in_is_clear(found: Measures) -> None:
     assert len(found.top) <= 6
-    assert len(found.rooms) <= 23
+    assert len(found.rooms) <= 24
 
 
 def test_imports_run_down_the_stairs(found: Measures) -> None:
@@ -48,7 +36,7 @@ def test_imports_run_down_the_stairs(found: Measures) -> None:
 def test_bounds_on_lengths_and_parameters(found: Measures) -> None:
     assert set(found.long_files) == LONG_FILES
     assert set(found.long_functions) == LONG_FUNCTIONS
-    assert set(found.wide_functions) == COMMANDS | WIDE_FUNCTIONS
+    assert set(found.wide_functions) == COMMANDS
 
 
 def test_what_is_counted() -> None:

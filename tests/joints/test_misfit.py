@@ -106,8 +106,8 @@ def test_a_term_added_in_one_place_counts_for_all_who_ask(
     turn = np.linspace(0.0, 1.2, 60)
     arc = [20.0, -20.0] + 25.0 * np.column_stack([-np.cos(turn), -np.sin(turn)]) + [5.0, 0.0]
     profile = profile_of_line(np.concatenate([down, arc[1:]]), Reach("left", 10.0))
-    material = TubeSpec()
-    limits, cuts = limits_of(MODEL, material), cuts_of(MODEL, material)
+    spec = TubeSpec()
+    limits, cuts = limits_of(MODEL, spec), cuts_of(MODEL, spec)
     grid = Discretisation(6.0, (0.0,), (0.0, 1.0), 0.1, 0.16)
 
     def searched() -> PosedChain:

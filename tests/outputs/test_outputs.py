@@ -19,7 +19,6 @@ from profiletool.pipeline import Result
 from profiletool.records.request import TubeSpec
 from profiletool.report.registry import rows_of, written
 from profiletool.template.kinds import Wish
-from profiletool.verdict.summary import joint_table
 from profiletool.verify.check import Check
 from profiletool.verify.run import DOWN, LYING, Run, inflate
 from profiletool.verify.tube import joint_actuator
@@ -134,7 +133,3 @@ def test_a_template_is_asked_for_by_kind_paper_and_version(result: Result) -> No
     files = some(dated, "template.svg", "template.pdf")
     assert files["template.svg"] != plain["template.svg"]
     assert files["template.pdf"] != some(replace(dated, paper="a4"), "template.pdf")["template.pdf"]
-
-
-def test_a_result_prints_as_its_table_of_joints(result: Result) -> None:
-    assert f"{result}\n" == joint_table(result.design)

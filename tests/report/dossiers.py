@@ -11,7 +11,7 @@ import numpy as np
 from profiletool.bending.kinematics import Bend, deform
 from profiletool.pipeline import Request, Result, run
 from profiletool.records.design import Design, Misfit, Sensitivity
-from profiletool.records.fe import Critical, FeState, Verification
+from profiletool.records.fe import CriticalPoint, FeState, Verification
 from profiletool.records.side import side_sign
 from profiletool.report.dossier import Dossier, dossier_of
 from profiletool.report.scene import scene_of
@@ -58,7 +58,7 @@ def made_up(design: Design, reached: float = 1.0) -> Verification:
     """As if finite elements had got to a share of the pressure."""
     shares = [k / 10.0 for k in range(1, 11) if k / 10.0 <= reached]
     bar = design.pressure_bar
-    critical = None if reached == 1.0 else Critical("limit point", (reached + 0.04) * bar)
+    critical = None if reached == 1.0 else CriticalPoint("limit point", (reached + 0.04) * bar)
     states = tuple(fe_state(design, share) for share in shares)
     return Verification(fe_state(design, 0.0), states, bar, critical, 123, 4567, 8910, 31, 1.5)
 

@@ -11,7 +11,7 @@ import pytest
 
 from profiletool.files.design_json import load_design
 from profiletool.records.design import Misfit
-from profiletool.records.fe import Critical, FeState, Verification
+from profiletool.records.fe import CriticalPoint, FeState, Verification
 from profiletool.records.frames import Shape
 from profiletool.report.fe import (
     compared_text,
@@ -37,7 +37,7 @@ def state(bar: float, *theta: float, **change: object) -> FeState:
     return replace(at_rest, **change)
 
 
-def run(*states: FeState, critical: Critical | None = None) -> Verification:
+def run(*states: FeState, critical: CriticalPoint | None = None) -> Verification:
     rest = state(0.0, *(0.0 for _ in states[0].theta_deg))
     return Verification(rest, states, states[-1].pressure_bar, critical, 10, 99, 250, 31, 1.23456)
 
@@ -58,7 +58,7 @@ def test_json() -> None:
     assert found["air_ml"] == [1.0, 2.0]
     assert found["touches"] is True  # at any pressure
     ended = json.loads(
-        fe_json(run(state(0.5, 1.0), critical=Critical("limit point", 0.61)), {"a": 1})
+        fe_json(run(state(0.5, 1.0), critical=CriticalPoint("limit point", 0.61)), {"a": 1})
     )
     assert ended["converged"] is False
     assert ended["critical"] == {"kind": "limit point", "pressure_bar": 0.61}
@@ -66,7 +66,7 @@ def test_json() -> None:
 
 
 def test_a_run_that_ends_at_once_prints_too() -> None:
-    nothing = replace(run(state(0.5, 1.0), critical=Critical("limit point", 0.01)), states=())
+    nothing = replace(run(state(0.5, 1.0), critical=CriticalPoint("limit point", 0.01)), states=())
     assert json.loads(fe_json(nothing))["theta_deg"] == [[]]
     assert "at 0.00 bar" in fe_text(nothing)
     assert theta_csv(nothing) == b"pressure_bar,theta1_deg,air_ml\n"
@@ -112,7 +112,9 @@ def test_comparison_with_a_design(samples: Path) -> None:
 def test_pictures_show_what_they_are_given() -> None:
     plain = png(theta_figure(FINGER, "finger"))
     marked = png(theta_figure(FINGER, "finger", [Mark("formula", 2.0, (70.0, 80.0, 60.0))]))
-    ended = png(theta_figure(replace(FINGER, critical=Critical("limit point", 2.25)), "finger"))
+    ended = png(
+        theta_figure(replace(FINGER, critical=CriticalPoint("limit point", 2.25)), "finger")
+    )
     assert len({plain, marked, ended}) == 3
     assert plain == png(theta_figure(FINGER, "finger"))
     many = run(state(1.0, *range(1, 13)))

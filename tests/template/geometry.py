@@ -1,4 +1,4 @@
-"""Lines that lie on each other."""
+"""Lines that lie on each other, and angles on a circle."""
 
 from __future__ import annotations
 
@@ -27,3 +27,8 @@ def coincident(found, near=1e-5):
     overlap = np.minimum(reach[:, 1], length) - np.maximum(reach[:, 0], 0)
     bad = (aside.max(axis=1) < near) & (overlap > near)
     return list(zip(a[bad].tolist(), b[bad].tolist(), strict=True))
+
+
+def angle_off(angle, target):
+    """Distance of angles around the circle, deg."""
+    return np.abs((np.asarray(angle) - target + 180) % 360 - 180)

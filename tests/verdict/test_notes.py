@@ -24,8 +24,8 @@ from profiletool.verdict.notes import (
 from profiletool.verdict.reasons import shortfalls
 
 PAPER = load_formula()
-MATERIAL = TubeSpec()
-RULES = joint_rules(theta_table(PAPER, MATERIAL), MATERIAL, 1.0)
+SPEC = TubeSpec()
+RULES = joint_rules(theta_table(PAPER, SPEC), SPEC, 1.0)
 GOOD = BendingSector(0.0, 12.4, 20.0, (0.0, 0.0), np.radians(30.0), 8.0, 0.8, 0.1, 0.0, 0.0, False)
 JOINT = Joint(1, 20.0, 8.0, 132.0, 270.0, 30.0, 30.6, None, 10.0)
 LAYOUT = Layout((JOINT,), 10.0, 30.0, 1.9, Pose(0.0, 0.0, 180.0))
@@ -40,8 +40,8 @@ def place(s: float) -> str:
 def reasons(
     sector: BendingSector = GOOD, layout: Layout = LAYOUT, **options: object
 ) -> tuple[str, ...]:
-    material = options.get("material", MATERIAL)
-    return shortfalls([sector], layout, RULES, material, PAPER, options.get("count"), place)
+    spec = options.get("spec", SPEC)
+    return shortfalls([sector], layout, RULES, spec, PAPER, options.get("count"), place)
 
 
 def test_a_good_design_has_none() -> None:
@@ -75,17 +75,17 @@ def test_a_number_that_was_asked_for_may_leave_the_tolerance() -> None:
 
 
 def test_tube_and_length() -> None:
-    assert "`formula`" in reasons(material=replace(MATERIAL, outer_diameter_mm=16.0))[0]
-    assert "`formula`" in reasons(material=replace(MATERIAL, wall_mm=1.5))[0]
+    assert "`formula`" in reasons(spec=replace(SPEC, outer_diameter_mm=16.0))[0]
+    assert "`formula`" in reasons(spec=replace(SPEC, wall_mm=1.5))[0]
     assert "250 mm" in reasons(layout=replace(LAYOUT, length_mm=250.2))[0]
     assert reasons(layout=replace(LAYOUT, length_mm=250.0)) == ()
 
 
 def noted(layout: Layout = LAYOUT, fit: Misfit | None = None, **options: object) -> str:
     profile = options.get("profile", ROUND)
-    material = options.get("material", MATERIAL)
+    spec = options.get("spec", SPEC)
     fit = Misfit(0.2, 0.5) if fit is None else fit
-    return " | ".join(warnings(layout, profile, fit, 1.0, material, PAPER, False))
+    return " | ".join(warnings(layout, profile, fit, 1.0, spec, PAPER, False))
 
 
 def test_warnings_come_with_their_cause_only() -> None:
@@ -97,7 +97,7 @@ def test_warnings_come_with_their_cause_only() -> None:
     assert "up to 1.1 mm off" in noted(quiet, Misfit(0.4, 1.1))
     bridged = replace(ROUND, bridged=np.arange(len(ROUND.s)) < 0.25 * len(ROUND.s))
     assert "25 % of the profile is bridged" in noted(quiet, profile=bridged)
-    assert "ends at 2 bar" in noted(quiet, material=replace(MATERIAL, max_pressure_bar=3.0))
+    assert "ends at 2 bar" in noted(quiet, spec=replace(SPEC, max_pressure_bar=3.0))
 
 
 def tube_at(dy: float, *bends: Bend) -> Shape:
@@ -145,7 +145,7 @@ def test_where_fe_and_the_formula_disagree() -> None:
 
 def test_what_fe_makes_needless_to_say() -> None:
     fit = Misfit(2.0, 5.0)
-    told = warnings(LAYOUT, ROUND, fit, 1.0, MATERIAL, PAPER, True)
+    told = warnings(LAYOUT, ROUND, fit, 1.0, SPEC, PAPER, True)
     assert not any("reads low" in line for line in told)
     assert any("by FE the bent shape lies up to 5.0 mm off" in line for line in told)
     assert any("is predicted up to 5.0 mm off" in line for line in noted(fit=fit).split(" | "))

@@ -23,7 +23,7 @@ _SURE_SHARE = 0.15
 
 
 @dataclass(frozen=True)
-class Frame:
+class SheetFrame:
     """A frontal picture's place on the board: its middle, and where right and down point."""
 
     middle: FloatArray
@@ -87,7 +87,7 @@ class Rectified:
         Standard deviation of the scale in the sheet's plane, relative: the print's, the
         corners' and the lens's together.
     warnings : tuple of str
-    frame : Frame
+    frame : SheetFrame
         Where the frontal picture lies on the board.
     view : View
         The photograph's.
@@ -107,7 +107,7 @@ class Rectified:
     corners_total: int
     error_share: float
     warnings: tuple[str, ...]
-    frame: Frame
+    frame: SheetFrame
     view: View
 
     def photo_of(self, px: FloatArray) -> FloatArray:
@@ -197,7 +197,7 @@ def _corner_points(board: Board) -> FloatArray:
     return np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]) * board.size_mm
 
 
-def _frame_for(board: Board, view: View) -> Frame:
+def _frame_for(board: Board, view: View) -> SheetFrame:
     """Choose the frontal picture: as fine as the photograph's finest place, up where it was."""
     middle = np.array(board.size_mm) / 2.0
     axes = np.array([[1.0, 0.0], [0.0, 1.0]])
@@ -213,10 +213,10 @@ def _frame_for(board: Board, view: View) -> Frame:
     px_per_mm = float(np.linalg.svd(np.stack(moved, axis=-1), compute_uv=False).max())
     px_per_mm = min(px_per_mm, math.sqrt(MAX_PIXELS / (across * along)))
     size = math.ceil(across * px_per_mm), math.ceil(along * px_per_mm)
-    return Frame(middle, right, down, 1.0 / px_per_mm, *size)
+    return SheetFrame(middle, right, down, 1.0 / px_per_mm, *size)
 
 
-def _warped(image: NDArray[np.uint8], view: View, frame: Frame) -> NDArray[np.uint8]:
+def _warped(image: NDArray[np.uint8], view: View, frame: SheetFrame) -> NDArray[np.uint8]:
     made = np.empty((frame.height, frame.width, *image.shape[2:]), np.uint8)
     columns = np.arange(frame.width, dtype=float)
     no_second_map = np.empty(0, np.float32)

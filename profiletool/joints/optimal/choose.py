@@ -111,7 +111,7 @@ class Choice:
 
 
 def choose(
-    profile: Profile, model: Model, material: TubeSpec, options: ChoiceOptions | None = None
+    profile: Profile, model: Model, spec: TubeSpec, options: ChoiceOptions | None = None
 ) -> Choice:
     """Choose number, places, senses, cuts and sectors of the joints, pressure and base.
 
@@ -119,7 +119,7 @@ def choose(
     ----------
     profile : Profile
     model : Model
-    material : TubeSpec
+    spec : TubeSpec
     options : ChoiceOptions, optional
 
     Raises
@@ -138,7 +138,7 @@ def choose(
             f"the profile is straight to {options.tolerance_mm:g} mm: there is nothing to bend; "
             "take another `side` or stretch, or a smaller `tolerance_mm`"
         )
-    limits, cuts = limits_of(model, material, options.base_free), cuts_of(model, material)
+    limits, cuts = limits_of(model, spec, options.base_free), cuts_of(model, spec)
     reached = profile
     for _ in range(_CUTS):
         # What lies farther down than the tube can be long is out of reach whatever it does.

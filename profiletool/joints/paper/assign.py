@@ -28,7 +28,7 @@ NEAR_DEG = 2.0  # an angle of the table this much above the wanted one is near e
 _F_DECIMALS = 1
 
 
-def theta_table(formula: Formula, material: TubeSpec) -> Table:
+def theta_table(formula: Formula, spec: TubeSpec) -> Table:
     """Tabulate the formula for cuts in whole meshes, up to the highest pressure.
 
     Raises
@@ -37,14 +37,14 @@ def theta_table(formula: Formula, material: TubeSpec) -> Table:
         When the formula covers none of them.
     """
     low, high = formula.openF_range_mm
-    pitch = material.pitch_mm
+    pitch = spec.pitch_mm
     cuts = np.arange(np.ceil(low / pitch - 1e-9), np.floor(high / pitch + 1e-9) + 1.0) * pitch
     if cuts.size == 0:
         raise OutOfRange(
             f"no whole number of {pitch:g} mm meshes lies within the {low:g} to {high:g} mm of "
             f'openF that formula "{formula.name}" holds for'
         )
-    most = min(material.max_pressure_bar, formula.pressure_range_bar[1])
+    most = min(spec.max_pressure_bar, formula.pressure_range_bar[1])
     least = formula.pressure_range_bar[0]
     pressures = [row for row in PRESSURES_BAR if least <= row <= most + 1e-9]
     if not pressures:
@@ -52,28 +52,28 @@ def theta_table(formula: Formula, material: TubeSpec) -> Table:
     return make_table(formula, openF_mm=cuts.tolist(), pressures_bar=pressures)
 
 
-def joint_rules(table: Table, material: TubeSpec, tolerance_mm: float) -> Rules:
+def joint_rules(table: Table, spec: TubeSpec, tolerance_mm: float) -> Rules:
     """Rules for joints by the table.
 
     Parameters
     ----------
     table : Table
-    material : TubeSpec
+    spec : TubeSpec
     tolerance_mm : float
         How far the polygon may lie off the profile.
     """
     return Rules(
-        radius_mm=material.radius_mm,
+        radius_mm=spec.radius_mm,
         openF_mm=np.array(table.openF_mm),
         theta_most_rad=np.radians(table.theta_deg.max(axis=(0, 2))),
-        wrap_mm=wrap_mm(material),
+        wrap_mm=wrap_mm(spec),
         tolerance_mm=tolerance_mm,
         interference_mm=min(INTERFERENCE_MM, tolerance_mm),
     )
 
 
 def lay_out(
-    profile: Profile, sectors: Sequence[BendingSector], table: Table, material: TubeSpec
+    profile: Profile, sectors: Sequence[BendingSector], table: Table, spec: TubeSpec
 ) -> Layout:
     """Measure the sectors and look the angles up.
 
@@ -85,7 +85,7 @@ def lay_out(
     profile : Profile
     sectors : sequence of BendingSector, in order along the profile
     table : Table
-    material : TubeSpec
+    spec : TubeSpec
 
     Raises
     ------
@@ -99,8 +99,8 @@ def lay_out(
     openF = _nearest_cuts(table, openF, wanted)
     found = assign(table, openF, wanted)
     sectors = [replace(sector, openF_mm=cut) for sector, cut in zip(sectors, openF, strict=True)]
-    F = _phalanges(profile, sectors, material)
-    root, pose = _base(profile, sectors[0], material)
+    F = _phalanges(profile, sectors, spec)
+    root, pose = _base(profile, sectors[0], spec)
     centres = root + np.concatenate([[0.0], np.cumsum(F)])
     joints = tuple(
         Joint(
@@ -138,9 +138,7 @@ def _nearest_cuts(table: Table, openF: Sequence[float], wanted: Sequence[float])
     return cuts
 
 
-def _phalanges(
-    profile: Profile, sectors: Sequence[BendingSector], material: TubeSpec
-) -> FloatArray:
+def _phalanges(profile: Profile, sectors: Sequence[BendingSector], spec: TubeSpec) -> FloatArray:
     """F of every joint by eq. (10), NS measured between points of the axis curve: (n,).
 
     Straight, as in the paper: "between the intersection points of the curved axis with the
@@ -149,8 +147,8 @@ def _phalanges(
     On the profile a bending sector is as long as its cut; one that bends away opens on the
     object-facing side and covers its opening too.
     """
-    axis = offset_points(profile, material.radius_mm)
-    ends = [0.5 * _covered(sector, material.radius_mm) for sector in sectors]
+    axis = offset_points(profile, spec.radius_mm)
+    ends = [0.5 * _covered(sector, spec.radius_mm) for sector in sectors]
 
     def wrapped(start: float, end: float, least: float) -> float:
         if end <= start:
@@ -159,7 +157,7 @@ def _phalanges(
         return max(float(np.hypot(*(there - here))), least)
 
     NS = [
-        wrapped(a.centre + ends[k], b.centre - ends[k + 1], wrap_mm(material))
+        wrapped(a.centre + ends[k], b.centre - ends[k + 1], wrap_mm(spec))
         for k, (a, b) in enumerate(pairwise(sectors))
     ]
     NS.append(wrapped(sectors[-1].centre + ends[-1], profile.length_mm, END_WRAP_MM))
@@ -173,7 +171,7 @@ def _covered(sector: BendingSector, radius_mm: float) -> float:
     return sector.openF_mm + max(opening, 0.0)
 
 
-def _base(profile: Profile, first: BendingSector, material: TubeSpec) -> tuple[float, Pose]:
+def _base(profile: Profile, first: BendingSector, spec: TubeSpec) -> tuple[float, Pose]:
     """Root length and pose: straight along the first line, so that joint 1 lies on its vertex.
 
     The root is as long as asked, longer only where the profile starts with a longer straight or
@@ -182,7 +180,7 @@ def _base(profile: Profile, first: BendingSector, material: TubeSpec) -> tuple[f
     heading = float(profile.heading[0])
     along = direction(heading)
     lead = float((np.array(first.vertex) - profile.points[0]) @ along)
-    room = 0.5 * first.openF_mm + wrap_mm(material)
-    root = round(max(material.root_mm, lead, room), _F_DECIMALS)
+    room = 0.5 * first.openF_mm + wrap_mm(spec)
+    root = round(max(spec.root_mm, lead, room), _F_DECIMALS)
     x, y = np.array(first.vertex) - root * along
     return root, Pose(float(x), float(y), float(np.degrees(heading)))

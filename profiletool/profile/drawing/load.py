@@ -12,7 +12,7 @@ from profiletool.profile.drawing.chain import Polyline, choose, clean
 from profiletool.profile.drawing.read_csv import read_csv
 from profiletool.profile.drawing.read_dxf import read_dxf
 from profiletool.profile.drawing.read_svg import read_svg
-from profiletool.records.profile import Drawing
+from profiletool.records.profile import DrawnLine
 from profiletool.records.units import FloatArray
 
 SUFFIXES = (".dxf", ".svg", ".csv")
@@ -20,7 +20,7 @@ MAX_BYTES = 20_000_000
 MAX_CLOSE_PAIRS = 2e7  # of pieces of a line that might cross
 
 
-def load_vector(path: Path) -> Drawing:
+def load_vector(path: Path) -> DrawnLine:
     """Read the one profile of a DXF, SVG or CSV file; the suffix tells which it is.
 
     Parameters
@@ -30,7 +30,7 @@ def load_vector(path: Path) -> Drawing:
 
     Returns
     -------
-    Drawing
+    DrawnLine
         In mm, y up. Of several lines, the longest closed one around all others, or the one that
         is much longer than the rest.
 
@@ -53,10 +53,10 @@ def load_vector(path: Path) -> Drawing:
         _check(chain)
     except (UnreadableInput, NoObject) as error:
         raise type(error)(_one_line(f"{path}: {error}")) from None
-    return Drawing(points=chain.points, closed=chain.closed)
+    return DrawnLine(points=chain.points, closed=chain.closed)
 
 
-def drawing_of(points: FloatArray) -> Drawing:
+def drawing_of(points: FloatArray) -> DrawnLine:
     """Take points (N, 2), mm, y up, for a drawn line; closed where the last meets the first.
 
     Raises
@@ -68,7 +68,7 @@ def drawing_of(points: FloatArray) -> Drawing:
     """
     chain = clean(np.asarray(points, dtype=float), closed=False)
     _check(chain)
-    return Drawing(points=chain.points, closed=chain.closed)
+    return DrawnLine(points=chain.points, closed=chain.closed)
 
 
 def _one_line(text: str) -> str:

@@ -26,9 +26,9 @@ from profiletool.records.units import FloatArray
 from profiletool.verdict.missed import missed, reasons, tightest_radius
 
 MODEL = FormulaModel(load_formula(), 10.0)
-MATERIAL = TubeSpec()
-LIMITS = limits_of(MODEL, MATERIAL)
-CUTS = cuts_of(MODEL, MATERIAL)
+SPEC = TubeSpec()
+LIMITS = limits_of(MODEL, SPEC)
+CUTS = cuts_of(MODEL, SPEC)
 
 
 def bent_line(*pieces: tuple[float, float]) -> Profile:
@@ -84,31 +84,31 @@ def test_the_vertex_lies_as_far_from_both_edges_of_the_window(sense: float) -> N
     assert [x, y] == pytest.approx(end, abs=1e-6)
 
 
-def within_limits(choice: Choice, material: TubeSpec = MATERIAL) -> None:
+def within_limits(choice: Choice, spec: TubeSpec = SPEC) -> None:
     chain, limits = choice.chain, choice.limits
     gaps = np.diff(chain.centre) - 0.5 * (chain.openF[1:] + chain.openF[:-1])
     assert np.all(gaps >= limits.wrap_mm - 1e-9)
-    assert chain.centre[0] >= max(material.root_mm, 0.5 * chain.openF[0] + limits.wrap_mm) - 1e-9
+    assert chain.centre[0] >= max(spec.root_mm, 0.5 * chain.openF[0] + limits.wrap_mm) - 1e-9
     assert chain.length - chain.centre[-1] - 0.5 * chain.openF[-1] >= limits.end_mm - 1e-9
-    assert chain.length <= material.max_length_mm + 1e-9
+    assert chain.length <= spec.max_length_mm + 1e-9
     assert np.all((chain.alpha >= MODEL.alpha[0]) & (chain.alpha <= MODEL.alpha[1]))
     assert limits.pressure[0] <= choice.pressure <= limits.pressure[1]
     assert np.all(np.isin(chain.openF, CUTS))
 
 
 def test_a_bowl_is_followed_within_the_limits_and_the_same_every_time() -> None:
-    first, second = (choose(BOWL, MODEL, MATERIAL) for _ in range(2))
+    first, second = (choose(BOWL, MODEL, SPEC) for _ in range(2))
     within_limits(first)
     assert first.misfit.rms_mm <= 0.25
     assert first.depth <= 0.4
-    assert reasons(BOWL, first, MODEL, MATERIAL, 0.25) == ()
+    assert reasons(BOWL, first, MODEL, SPEC, 0.25) == ()
     assert np.array_equal(first.shape.facing, second.shape.facing)
     assert first.pressure == second.pressure
 
 
 @pytest.mark.parametrize("count", [2, 5])
 def test_a_wished_number_of_joints_is_honoured(count: int) -> None:
-    choice = choose(BOWL, MODEL, MATERIAL, ChoiceOptions(count=count))
+    choice = choose(BOWL, MODEL, SPEC, ChoiceOptions(count=count))
     within_limits(choice)
     assert len(choice.chain.openF) == count
     assert choice.trade_off.rms_mm.shape[1] == count
@@ -116,16 +116,14 @@ def test_a_wished_number_of_joints_is_honoured(count: int) -> None:
 
 
 def test_fewer_joints_do_for_a_looser_tolerance() -> None:
-    tight, loose = (
-        choose(BOWL, MODEL, MATERIAL, ChoiceOptions(tolerance_mm=t)) for t in (0.05, 2.0)
-    )
+    tight, loose = (choose(BOWL, MODEL, SPEC, ChoiceOptions(tolerance_mm=t)) for t in (0.05, 2.0))
     assert len(loose.chain.openF) < len(tight.chain.openF)
 
 
 def test_less_pressure_takes_no_more_than_is_allowed() -> None:
-    material = replace(MATERIAL, max_pressure_bar=1.2)
-    choice = choose(BOWL, MODEL, material)
-    within_limits(choice, material)
+    spec = replace(SPEC, max_pressure_bar=1.2)
+    choice = choose(BOWL, MODEL, spec)
+    within_limits(choice, spec)
     assert choice.pressure <= 0.12 + 1e-12
     assert choice.trade_off.pressure[-1] == pytest.approx(0.12)
 
@@ -133,7 +131,7 @@ def test_less_pressure_takes_no_more_than_is_allowed() -> None:
 def test_a_free_base_is_no_worse() -> None:
     hollow = bent_line((12.0, -14.0), (50.0, 80.0), (25.0, 0.0))
     fixed, free = (
-        choose(hollow, MODEL, MATERIAL, ChoiceOptions(count=3, base_free=f)) for f in (False, True)
+        choose(hollow, MODEL, SPEC, ChoiceOptions(count=3, base_free=f)) for f in (False, True)
     )
     assert free.misfit.rms_mm <= fixed.misfit.rms_mm + 1e-3
     assert free.limits.base_free
@@ -168,7 +166,7 @@ def test_it_is_at_least_as_good_as_the_actuator_that_the_profile_comes_from(chai
     pose = Pose(0.0, 0.0, -90.0)
     made = MODEL.shape(chain, 0.17, pose, 1.0)
     profile = profile_like(made.facing)
-    choice = choose(profile, MODEL, MATERIAL)
+    choice = choose(profile, MODEL, SPEC)
     within_limits(choice)
     # The profile's headings are smoothed at the joints' sharp ends.
     assert choice.misfit.rms_mm <= max(misfit(made, profile).rms_mm + 0.02, 0.25)
@@ -176,8 +174,8 @@ def test_it_is_at_least_as_good_as_the_actuator_that_the_profile_comes_from(chai
 
 def test_a_curve_too_tight_is_named_with_its_place() -> None:
     corner = bent_line((50.0, 0.0), (3.0, 90.0), (50.0, 0.0))
-    choice = choose(corner, MODEL, MATERIAL)
-    (stretch,) = missed(corner, choice, MODEL, MATERIAL, 0.25)
+    choice = choose(corner, MODEL, SPEC)
+    (stretch,) = missed(corner, choice, MODEL, SPEC, 0.25)
     assert stretch.start < 51.5 < stretch.end
     assert "turns 9" in stretch.reason or "turns 8" in stretch.reason
     assert "toward the object" in stretch.reason
@@ -185,24 +183,24 @@ def test_a_curve_too_tight_is_named_with_its_place() -> None:
 
 
 def test_a_hollow_tighter_than_the_tube_bends_is_named() -> None:
-    least = tightest_radius(MODEL, MATERIAL, 0.2, -1.0)
-    assert least > 25.0 > tightest_radius(MODEL, MATERIAL, 0.2, 1.0)
+    least = tightest_radius(MODEL, SPEC, 0.2, -1.0)
+    assert least > 25.0 > tightest_radius(MODEL, SPEC, 0.2, 1.0)
     hollow = bent_line((30.0, 0.0), (np.radians(120.0) * 22.0, -120.0), (30.0, 0.0))
-    choice = choose(hollow, MODEL, MATERIAL)
-    said = " ".join(reasons(hollow, choice, MODEL, MATERIAL, 0.25))
+    choice = choose(hollow, MODEL, SPEC)
+    said = " ".join(reasons(hollow, choice, MODEL, SPEC, 0.25))
     assert (
         "away from the object, at a radius down to 22 mm, and joints in a row follow none " in said
     )
 
 
 def test_a_profile_too_long_for_the_tube_is_followed_as_far_as_it_goes() -> None:
-    material = replace(MATERIAL, max_length_mm=70.0)
-    choice = choose(BOWL, MODEL, material)
-    within_limits(choice, material)
-    (reason,) = reasons(BOWL, choice, MODEL, material, 0.25)
+    spec = replace(SPEC, max_length_mm=70.0)
+    choice = choose(BOWL, MODEL, spec)
+    within_limits(choice, spec)
+    (reason,) = reasons(BOWL, choice, MODEL, spec, 0.25)
     assert "may be 70 mm long" in reason
 
 
 def test_a_straight_profile_has_nothing_to_bend() -> None:
     with pytest.raises(NoObject, match="straight"):
-        choose(bent_line((60.0, 0.0)), MODEL, MATERIAL)
+        choose(bent_line((60.0, 0.0)), MODEL, SPEC)

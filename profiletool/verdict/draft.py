@@ -20,7 +20,7 @@ from profiletool.verify.check import Check
 
 
 @dataclass(frozen=True)
-class Attempt:
+class Draft:
     """A design with everything that it was made from, to be judged.
 
     Attributes
@@ -55,7 +55,7 @@ class Attempt:
         return (self.check.shape if self.check is not None else None) or self.plan.bent
 
 
-def attempt_of(request: Request, subject: Subject, formula: Formula, plan: Plan) -> Attempt:
+def attempt_of(request: Request, subject: Subject, formula: Formula, plan: Plan) -> Draft:
     """Make the design of a plan; finite elements and the verdict come later.
 
     Parameters
@@ -68,24 +68,24 @@ def attempt_of(request: Request, subject: Subject, formula: Formula, plan: Plan)
 
     Returns
     -------
-    Attempt
+    Draft
         Not verified and without notes.
     """
     profile, layout = subject.profile, plan.layout
     radius = request.tube.radius_mm
     shape = deform(layout.bends(), layout.length_mm, radius, layout.pose, profile.sign)
     design = _design(request, subject, formula, plan, shape)
-    return Attempt(request, subject, formula, plan, design, shape, None)
+    return Draft(request, subject, formula, plan, design, shape, None)
 
 
 def _design(
     request: Request, subject: Subject, formula: Formula, plan: Plan, shape: Shape
 ) -> Design:
     """Gather the design; whether it is feasible and what its user should know comes later."""
-    material, profile, layout = request.tube, subject.profile, plan.layout
+    spec, profile, layout = request.tube, subject.profile, plan.layout
     response = None if plan.by == "formula" else misfit(plan.bent, profile)
     seam = best_seam(layout.joints).seam_deg
-    gauze = Gauze(material.pitch_mm, material.thread_mm, material.turns, seam)
+    gauze = Gauze(spec.pitch_mm, spec.thread_mm, spec.turns, seam)
     return Design(
         source=Source(
             file=request.file.name,
@@ -102,11 +102,11 @@ def _design(
             confidence=None if subject.silhouette is None else subject.silhouette.confidence,
         ),
         tube=Tube(
-            material.outer_diameter_mm,
-            material.wall_mm,
+            spec.outer_diameter_mm,
+            spec.wall_mm,
             layout.root_mm,
             layout.length_mm,
-            material.rubber,
+            spec.rubber,
         ),
         gauze=gauze,
         formula=FormulaRef(formula.name, formula.sha256),

@@ -1,4 +1,4 @@
-"""The faces of `fem` and `formula`: public names, what they load, and their docstrings."""
+"""The faces of the packages: public names, what they load, and their docstrings."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from types import FunctionType
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-FACES = ("fem", "formula")
+FACES = ("profiletool", "fem", "formula")
 NAMES = [
     pytest.param(face, name, id=f"{face}.{name}")
     for face in FACES
@@ -114,3 +114,9 @@ def test_docstrings_are_complete(face: str, name: str) -> None:
     else:
         told = []
     assert [word for word in told if not re.search(rf"\b{word}\b", doc)] == []
+
+
+@pytest.mark.parametrize("face", FACES)
+def test_the_installed_package_is_ours(face: str) -> None:
+    # `fem` and `formula` are top-level names that another wheel may take.
+    assert Path(str(import_module(face).__file__)).parent == ROOT / face

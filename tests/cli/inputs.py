@@ -1,0 +1,49 @@
+"""Inputs of commands, and finite elements that fail on purpose."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from PIL import Image, ImageDraw
+
+from tests.calls import Result, call
+
+REST = "finger_rest.csv"
+
+
+def unverified(*arguments: object) -> Result:
+    """Design without finite elements, where they are not the point."""
+    return call("design", *arguments, "--no-verify")
+
+
+def picture(path: Path, *, blank: bool = False, **save: object) -> Path:
+    image = Image.new("RGB", (300, 400), (235, 232, 228))
+    if not blank:
+        ImageDraw.Draw(image).ellipse((70, 60, 230, 330), fill=(120, 60, 40))
+    image.save(path, **save)
+    return path
+
+
+def ending_early(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let every FE run meet a limit point half-way."""
+    import fem
+
+    def stopped(*arguments: object, **options: object) -> fem.Solution:
+        found = fem.solve(*arguments, **options)
+        middle = len(found.states) // 2
+        ended = fem.Critical("limit point", found.states[middle].pressure)
+        return replace(found, states=found.states[:middle], critical=ended)
+
+    monkeypatch.setattr("profiletool.verify.run.solve", stopped)
+
+
+def never_converging(monkeypatch: pytest.MonkeyPatch) -> None:
+    from fem.errors import NotConverged
+
+    def fails(*_: object, **__: object) -> None:
+        raise NotConverged("inverted at 0.010 bar", (), 0.001)
+
+    for module in ("run", "forward"):
+        monkeypatch.setattr(f"profiletool.verify.{module}.solve", fails)

@@ -1,0 +1,35 @@
+"""The file of options."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.cli.inputs import unverified
+
+
+def test_config_gives_defaults_and_the_command_line_wins(samples: Path, tmp_path: Path) -> None:
+    (tmp_path / "lab.toml").write_text('side = "right"\nmax-length = 200\nroot = 12\n')
+    made = unverified(samples / "egg.png", "--config", "lab.toml", "--root", 14, "--json")
+    design = json.loads(made.stdout)
+    assert design["source"]["side"] == "right"
+    assert design["tube"]["root_mm"] == 14
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("sidee = 1", 2),
+        ("side = [1]", 2),
+        ("height = true", 2),
+        ("no-verify = true", 2),
+        ("side = 'up'", 2),
+        ("side = ", 3),
+        ("root = 'x'", 2),
+    ],
+)
+def test_config_is_checked(text: str, code: int, samples: Path, tmp_path: Path) -> None:
+    (tmp_path / "lab.toml").write_text(text)
+    assert unverified(samples / "egg.png", "--config", "lab.toml").exit_code == code
