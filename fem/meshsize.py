@@ -1,4 +1,4 @@
-"""How fine a mesh is, and the one brick that all others are copies of."""
+"""Fineness of a mesh, and the one brick that all others are copies of."""
 
 from __future__ import annotations
 

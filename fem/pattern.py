@@ -1,4 +1,4 @@
-"""Where the unknowns are, and where the entries of brick matrices go in a layer's step."""
+"""Numbering of the unknowns, and the places of brick matrices in a layer's step."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How angles and the object-facing line answer to small changes, by direct differentiation.
+"""Derivatives of angles and of the object-facing line, by direct differentiation.
 
 At equilibrium R(x; p) = 0, so dx/dp = -K^-1 dR/dp with the tangent K at the state itself: one
 back-substitution a parameter. dR/dp at fixed positions is taken by central differences of the

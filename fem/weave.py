@@ -1,4 +1,4 @@
-"""Where the threads run on a mesh's outer faces, and what of them a window leaves uncut."""
+"""Threads on a mesh's outer faces, and the part of them that a window leaves uncut."""
 
 from __future__ import annotations
 
