@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.actuator import Actuator
+from fem.arrays import FloatArray
 from fem.element import Kind, natural_nodes
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fem.arrays import IntArray
 from fem.material import PAIRS
 from fem.mesh import Mesh
-
-IntArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

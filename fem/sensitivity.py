@@ -16,14 +16,13 @@ from numpy.typing import NDArray
 
 from fem import blas, measure
 from fem.actuator import Actuator
+from fem.arrays import FloatArray
 from fem.assembly import Forces, System
 from fem.errors import FemError
 from fem.items import MakeItem
 from fem.mesh import Mesh, alike, make_mesh, remesh
 from fem.parameters import LENGTH_STEP, Parameter, families
 from fem.transfer import settle
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

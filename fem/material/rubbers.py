@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from fem.arrays import FloatArray
 from fem.material.invariant import Curvatures, InvariantLaw, Value
-from fem.material.kinematics import FloatArray
 from fem.material.protocol import Constant, bulk_modulus
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
@@ -11,6 +11,14 @@ from PIL import Image, ImageDraw
 from tests.calls import Result, call
 
 REST = "finger_rest.csv"
+
+
+@dataclass(frozen=True)
+class Made:
+    """A design's folder, and what the command printed."""
+
+    folder: Path
+    result: Result
 
 
 def unverified(*arguments: object) -> Result:

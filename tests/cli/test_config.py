@@ -10,12 +10,16 @@ import pytest
 from tests.cli.inputs import unverified
 
 
+@pytest.mark.usefixtures("few_files")
 def test_config_gives_defaults_and_the_command_line_wins(samples: Path, tmp_path: Path) -> None:
-    (tmp_path / "lab.toml").write_text('side = "right"\nmax-length = 200\nroot = 12\n')
+    (tmp_path / "lab.toml").write_text(
+        'side = "right"\nmax-length = 200\nroot = 12\nmethod = "paper"\n'
+    )
     made = unverified(samples / "egg.png", "--config", "lab.toml", "--root", 14, "--json")
     design = json.loads(made.stdout)
     assert design["source"]["side"] == "right"
     assert design["tube"]["root_mm"] == 14
+    assert design["method"] == "paper"
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 
 from tests.calls import call
-from tests.cli.inputs import REST, picture, unverified
+from tests.cli.inputs import REST, Made, picture, unverified
 
 
 def test_the_main_job(samples: Path, tmp_path: Path) -> None:
@@ -61,19 +61,19 @@ def check_series(folder: Path) -> None:
     assert (folder / "actuator.vtu").read_bytes() == last
 
 
-def test_same_input_same_bytes(samples: Path, tmp_path: Path) -> None:
-    for name in ("a", "b"):
-        assert unverified(samples / "egg.png", "--out", name).exit_code == 0
-    files = sorted(path.name for path in (tmp_path / "a").iterdir())
+def test_same_input_same_bytes(egg: Made, samples: Path, tmp_path: Path) -> None:
+    assert unverified(samples / "egg.png").exit_code == 0
+    again = tmp_path / "egg_design"
+    files = sorted(path.name for path in egg.folder.iterdir())
     assert {"report.html", "template.pdf", "mounting.dxf", "overlay.png"} <= set(files)
+    assert files == sorted(path.name for path in again.iterdir())
     for file in files:
-        assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes(), file
+        assert (egg.folder / file).read_bytes() == (again / file).read_bytes(), file
 
 
-def test_json_on_stdout_is_the_file(samples: Path, tmp_path: Path) -> None:
-    result = unverified(samples / "egg.png", "--json", "--quiet")
-    assert result.stdout == (tmp_path / "egg_design" / "design.json").read_text()
-    assert result.stderr == ""
+def test_json_on_stdout_is_the_file(egg: Made) -> None:
+    assert egg.result.stdout == (egg.folder / "design.json").read_text()
+    assert egg.result.stderr == ""
 
 
 @pytest.mark.slow
@@ -95,18 +95,21 @@ def test_left_and_right_of_a_symmetric_object_agree(tmp_path: Path) -> None:
     assert right["base_pose"]["heading_deg"] == pytest.approx(0.0, abs=1.0)
 
 
-def test_a_drawn_profile(samples: Path, tmp_path: Path) -> None:
-    result = unverified(samples / REST, "--json")
+@pytest.mark.usefixtures("few_files")
+def test_a_drawn_profile(egg: Made, samples: Path, tmp_path: Path) -> None:
+    result = unverified(samples / REST, "--json", "--method", "paper")
     assert result.exit_code == 0, result.stderr
     design = json.loads(result.stdout)
     assert design["source"]["mm_per_px"] is None
     assert design["source"]["scale_source"] == "vector"
+    assert (tmp_path / "finger_rest_design" / "shape.csv").exists()
     assert not (tmp_path / "finger_rest_design" / "mask.png").exists()
+    assert (egg.folder / "mask.png").exists()  # that of a picture is there
 
 
-def test_shape_csv_holds_target_and_predicted_line(samples: Path, tmp_path: Path) -> None:
-    design = json.loads(unverified(samples / "egg.png", "--json").stdout)
-    with (tmp_path / "egg_design" / "shape.csv").open() as file:
+def test_shape_csv_holds_target_and_predicted_line(egg: Made) -> None:
+    design = json.loads(egg.result.stdout)
+    with (egg.folder / "shape.csv").open() as file:
         rows = list(csv.DictReader(file))
     for curve, length in (("target", design["source"]["profile_length_mm"]), ("formula", None)):
         points = np.array(

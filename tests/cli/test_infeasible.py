@@ -22,6 +22,7 @@ def test_exit_6_writes_the_best_attempt(tmp_path: Path) -> None:
     assert "INFEASIBLE" in (tmp_path / "corner_design" / "template.svg").read_text()
 
 
+@pytest.mark.usefixtures("few_files")
 @pytest.mark.parametrize(
     ("options", "says"),
     [(("--diameter", "16"), "--formula"), (("--max-length", "60"), "--max-length")],
@@ -34,6 +35,7 @@ def test_exit_6_for_other_limits(
     assert says in error_of(result)
 
 
+@pytest.mark.usefixtures("few_files")
 def test_exit_6_for_a_shape_that_is_not_good_enough(tmp_path: Path) -> None:
     (tmp_path / "corner.csv").write_text("0,80\n0,0\n80,0\n")
     result = unverified("corner.csv", "--tolerance", "0.1", "--joints", "1")
@@ -46,6 +48,7 @@ def test_exit_6_for_a_shape_that_is_not_good_enough(tmp_path: Path) -> None:
     assert "INFEASIBLE" in (tmp_path / "corner_design" / "template.svg").read_text()
 
 
+@pytest.mark.usefixtures("few_files")
 @pytest.mark.parametrize(
     ("failing", "says"),
     [(ending_early, "limit point"), (never_converging, "no equilibrium found")],
@@ -77,6 +80,7 @@ def test_exit_7_writes_the_design_marked_not_verified(
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("few_files")
 def test_exit_7_where_no_choice_of_joints_stands(
     samples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -95,6 +99,7 @@ def test_exit_7_where_no_choice_of_joints_stands(
     assert design["sensitivity"] == []
 
 
+@pytest.mark.usefixtures("few_files")
 @pytest.mark.parametrize("method", ["paper", "optimal"])
 def test_exit_6_wins_over_exit_7(
     method: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

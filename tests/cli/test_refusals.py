@@ -48,6 +48,7 @@ def test_exit_2_for_bad_usage(options: tuple[str, ...], tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["oval.png"]
 
 
+@pytest.mark.usefixtures("few_files")
 def test_exit_2_for_a_folder_that_is_there(tmp_path: Path) -> None:
     file = picture(tmp_path / "oval.png")
     old = tmp_path / "oval_design" / "design.json"
@@ -57,7 +58,7 @@ def test_exit_2_for_a_folder_that_is_there(tmp_path: Path) -> None:
     assert again.exit_code == 2
     assert "--force" in error_of(again)
     assert old.read_text() == "an earlier one"
-    assert unverified(file, "--height", 90, "--force").exit_code == 0
+    assert unverified(file, "--height", 90, "--force", "--method", "paper").exit_code == 0
     assert old.read_text() != "an earlier one"
 
 
@@ -86,6 +87,7 @@ def test_exit_5_without_an_object(tmp_path: Path) -> None:
     error_of(result)
 
 
+@pytest.mark.usefixtures("few_files")
 @pytest.mark.parametrize(
     ("box", "options", "code"),
     [
@@ -103,7 +105,7 @@ def test_exit_5_for_an_object_cut_off_where_it_matters(
     image = Image.new("RGB", (300, 400), (235, 232, 228))
     ImageDraw.Draw(image).ellipse(box, fill=(120, 60, 40))
     image.save(tmp_path / "cut.png")
-    result = unverified("cut.png", *options)
+    result = unverified("cut.png", "--method", "paper", *options)
     assert result.exit_code in ({0, 6} if code == 0 else {code}), result.stderr
     if code:
         assert "runs out of the frame" in error_of(result)
@@ -119,6 +121,7 @@ def test_exit_5_for_a_straight_profile(tmp_path: Path) -> None:
     assert "straight" in error_of(result)
 
 
+@pytest.mark.usefixtures("few_files")
 @pytest.mark.parametrize(
     ("points", "options", "code"),
     [

@@ -6,6 +6,7 @@ import json
 import os
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,8 +24,9 @@ from profiletool.files.design_json import load_design
 from profiletool.files.formula import read_formula
 from profiletool.image.load import load_picture
 from profiletool.profile.drawing.load import load_vector
+from profiletool.profile.shape_csv import read_shape_csv
 from profiletool.rubber.presets import parse_rubber
-from profiletool.subject.recall import target_of
+from profiletool.subject.recall import Target, target_of
 from tests.calls import call
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -217,11 +219,28 @@ def test_a_design_never_leads_out_of_its_folder(tmp_path: Path, name: str) -> No
     assert target_of(load_design(folder / "design.json"), folder / "design.json") is not None
 
 
-@pytest.mark.parametrize("value", ["nan", "inf", "1e308", "-1e300", "1e999"])
+def five_mm(folder: Path, x: str) -> Target | None:
+    """Look for the target of a design 5 mm long beside a shape.csv whose line is as long, at x."""
+    table = f"curve,s_mm,x_mm,y_mm\ntarget,0,{x},0\ntarget,5,{x},5\n"
+    (folder / "shape.csv").write_text(table)
+    design = load_design(ROOT / "samples" / "paper_bulb.json")
+    design = replace(design, source=replace(design.source, profile_length_mm=5.0))
+    return target_of(design, folder / "design.json")
+
+
+@pytest.mark.parametrize("value", ["1.1e5", "1e308", "-1e300"])
 def test_a_shape_of_absurd_numbers_is_no_target(tmp_path: Path, value: str) -> None:
-    path = tmp_path / "shape.csv"
-    path.write_text(f"curve,s_mm,x_mm,y_mm\ntarget,0,{value},0\ntarget,5,5,{value}\n")
-    read_shape(path)
+    found = five_mm(tmp_path, "9.9e4")
+    assert found is not None
+    assert found.file == "shape.csv"
+    assert five_mm(tmp_path, value) is None
+
+
+@pytest.mark.parametrize("value", ["nan", "inf", "1e999", "-1e300"])
+def test_a_table_of_absurd_numbers_is_refused(value: str) -> None:
+    for x, y in ((value, "0"), ("0", value)):
+        with pytest.raises(ValueError, match="not finite"):
+            read_shape_csv(f"curve,s_mm,x_mm,y_mm\ntarget,0,0,0\ntarget,5,{x},{y}\n", "target")
 
 
 def test_svg_references_out_of_the_file_are_not_followed(tmp_path: Path) -> None:

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fem.material import PAPER_RUBBER, FloatArray, NeoHooke, Ogden, Yeoh, full_tangent, kinematics
+from fem.arrays import FloatArray
+from fem.material import PAPER_RUBBER, NeoHooke, Ogden, Yeoh, full_tangent, kinematics
 from profiletool.errors import UnreadableInput, UsageError
 from profiletool.records.rubber import constants_text, law_of
 from profiletool.rubber.presets import NUS, PRESETS, Rubber, parse_rubber, presets_text
@@ -231,13 +232,15 @@ def test_a_file_may_be_written_in_many_ways(tmp_path: Path, text: str) -> None:
         (b"#" * 5_000_001, "too large"),
     ],
 )
-def test_a_malformed_file_is_refused(tmp_path: Path, data: bytes, says: str) -> None:
-    path = tmp_path / "bad.csv"
-    path.write_bytes(data)
+def test_a_malformed_file_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, data: bytes, says: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("bad.csv").write_bytes(data)
     with pytest.raises(UnreadableInput) as caught:
-        parse_rubber(str(path))
+        parse_rubber("bad.csv")
     assert says in str(caught.value)
-    assert "bad.csv" in str(caught.value) or len(str(path)) > 50  # long paths are cut
+    assert "bad.csv" in str(caught.value)
     assert "\n" not in str(caught.value)
 
 
