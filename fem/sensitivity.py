@@ -122,6 +122,11 @@ def sensitivities(
     extra : sequence of MakeItem
         What contributes to the energy beside bricks, gauze and air; see `fem.items`.
 
+    Returns
+    -------
+    Sensitivities
+        By the pressure, each uncut sector, each cut's length, each wrapped length and the wall.
+
     Raises
     ------
     FemError
