@@ -1,4 +1,4 @@
-"""What the benchmarks share: the machine, a kernel to measure it by, and the actuators."""
+"""Shared parts of the benchmarks: the machine, a calibration kernel, and the actuators."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How near designs come to their profiles, by FE: the optimal method against the paper's.
+"""Distances of designs off their profiles, by FE: the optimal method against the paper's.
 
 The paper's method is the yardstick: errors are printed as ratios to its own. Without arguments all
 samples are designed; pictures with a stored resolution and drawings can be given instead.

@@ -1,4 +1,4 @@
-"""How the time grows with the length of the tube: joints 20 mm apart, up to 500 mm."""
+"""Growth of the solution time with the tube's length: joints 20 mm apart, up to 500 mm."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether random actuators can be inflated: how many end, and whether any ends wrongly.
+"""Robustness of the engine: random actuators inflated, and the ways in which they end.
 
 A run ends when every asked pressure is reached or the path stops at a critical state. A state
 that does not hold what it promises (residual, balance of energy, no brick turned inside out) is

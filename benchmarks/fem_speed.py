@@ -1,4 +1,4 @@
-"""How fast the finite-element engine is, in seconds and in units of a calibration kernel."""
+"""Speed of the finite-element engine, in seconds and in units of a calibration kernel."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How well the printed sheet gives sizes: rendered photographs of bodies that are known.
+"""Accuracy of sizes from the printed sheet: rendered photographs of known bodies.
 
 The error is the worse one of width and length. `measured` is the part of the stated error that
 does not doubt the body to be one of revolution, `stated` the whole.

@@ -1,4 +1,4 @@
-"""How well the object is told from its ground, on pictures whose true mask is known.
+"""Accuracy of silhouettes, on pictures whose true mask is known.
 
 Cut-outs of ../shared/photos are laid on grounds that are drawn, and photographed: shadow, uneven
 light, blur, noise, JPEG. A refusal is counted apart; "right" means an overlap (IoU) of at least

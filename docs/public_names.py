@@ -41,12 +41,17 @@ def setup(app: Sphinx) -> dict[str, bool]:
 def _plain_headings(
     app: Sphinx, what: str, name: str, value: Any, options: Any, lines: list[str]
 ) -> None:
-    """Turn a heading in a package's docstring into a rubric: two pages have a Glossary."""
+    """Turn a heading in a package's docstring into a rubric, and its terms into a list.
+
+    Two pages have a Glossary, and Sphinx wants headings to differ.
+    """
     if what != "module":
         return
-    for number in range(len(lines) - 1):
-        if re.fullmatch(r"-{4,}", lines[number + 1]):
-            lines[number : number + 2] = [f".. rubric:: {lines[number]}", ""]
+    for number, line in enumerate(lines):
+        if number + 1 < len(lines) and re.fullmatch(r"-{4,}", lines[number + 1]):
+            lines[number : number + 2] = [f".. rubric:: {line}", ""]
+        elif term := re.fullmatch(r"(\w[\w, ]*) : (.*)", line):
+            lines[number] = f"- **{term[1]}**: {term[2]}"
 
 
 @cache

@@ -12,17 +12,14 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fem.arrays import FloatArray, IntArray
 from fem.items import ITEMS, MakeItem
 from fem.mesh import Mesh
 from fem.part import Part
 from fem.pattern import Unknowns
 from fem.pivot import Pivot
 from fem.plug import Plug
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

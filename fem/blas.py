@@ -21,9 +21,8 @@ from typing import Any
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from fem.arrays import FloatArray
 
 
 @cache

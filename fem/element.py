@@ -14,7 +14,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-FloatArray = NDArray[np.float64]
+from fem.arrays import FloatArray
+
 Kind = Literal["hex20", "hex8"]
 
 # Faces in (eta, zeta): corners, then mid-sides.

@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fem.arrays import FloatArray
 from fem.assembly import Forces
 from fem.sections import Pose
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

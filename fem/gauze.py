@@ -12,9 +12,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from fem.arrays import FloatArray
 
 # Polyamide, thread of 0.25 mm: EA of one thread, and two turns of a 2 mm mesh.
 THREAD_EA = 2000.0 * np.pi / 4.0 * 0.25**2

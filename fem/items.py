@@ -17,15 +17,12 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem import gauze, solid
+from fem.arrays import FloatArray, IntArray
 from fem.gauze import Threads
 from fem.mesh import Mesh
 from fem.pressure import face_volumes
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 class Sums:

@@ -8,11 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.actuator import Actuator
+from fem.arrays import FloatArray, IntArray
 from fem.element import natural_nodes
 from fem.meshsize import MeshSize
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

@@ -12,15 +12,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fem.arrays import FloatArray
 from fem.assembly import System
 from fem.equilibrium import Critical, Equilibrium, lagrange, peak, potential, spread
 from fem.errors import Attempt, NotConverged
 from fem.newton import Correction, correct, descend
 from fem.sections import Chart, Pose
-
-FloatArray = NDArray[np.float64]
 
 _ORDER = 2  # of the extrapolation
 _SHRINK, _GROW = 0.3, 2.5

@@ -11,12 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem import gauze
+from fem.arrays import FloatArray
 from fem.element import face_nodes, natural_nodes, shape
 from fem.mesh import Mesh
 from fem.meshsize import start_angle
 from fem.sections import best_rotations, rotation_matrix, rotation_vector
-
-FloatArray = NDArray[np.float64]
 
 _NEAR = 0.02  # of the diameter: surfaces this near touch
 

@@ -17,15 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.actuator import Actuator
+from fem.arrays import FloatArray, IntArray
 from fem.element import Reference, face_nodes, reference
 from fem.gauze import Threads
 from fem.layer import across, layer_bricks, number_nodes, positions, symmetry
 from fem.meshlines import make_columns, stations, stretched
 from fem.meshsize import DEFAULT_MESH, MeshSize, one_brick
 from fem.weave import axial_threads, hoop_threads
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

@@ -5,13 +5,10 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.actuator import Actuator
+from fem.arrays import FloatArray, IntArray
 from fem.meshsize import MeshSize, start_angle
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _GIVE = 0.1  # how much sizes may be stretched to fill a length
 _SHRINK = 0.7  # of a layer's height: the most that a changed length takes off

@@ -1,16 +1,14 @@
-"""How fine a mesh is, and the one brick that all others are copies of."""
+"""Fineness of a mesh, and the one brick that all others are copies of."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.actuator import Actuator
+from fem.arrays import FloatArray
 from fem.element import Kind, natural_nodes
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

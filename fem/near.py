@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem import blas
 from fem.actuator import Actuator
+from fem.arrays import FloatArray
 from fem.assembly import System
 from fem.equilibrium import Equilibrium
 from fem.errors import Attempt, NotConverged
@@ -22,7 +22,6 @@ from fem.sections import Chart
 from fem.solution import Solution, state_of
 from fem.transfer import settle, transfer
 
-FloatArray = NDArray[np.float64]
 _LEAST_WAY = 0.2  # of the way from one actuator to another, before it gives up
 
 

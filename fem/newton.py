@@ -6,13 +6,12 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fem.arrays import FloatArray
 from fem.assembly import Forces, Inverse, System
 from fem.sections import Chart, Pose
 from fem.slack import Switching
 
-FloatArray = NDArray[np.float64]
 Outcome = Literal["converged", "residual", "inverted"]
 
 _MOST = 10  # factorisations after which it gives up

@@ -7,16 +7,13 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fem.arrays import FloatArray, IntArray
 from fem.items import Batch, MakeItem, Sums
 from fem.mesh import Mesh
 from fem.pattern import Pattern, Unknowns, make_pattern
 from fem.pivot import Pivot
 from fem.plug import Plug
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _CHUNK = 512  # bricks at a time, so that the arrays of one step stay in the cache
 

@@ -1,16 +1,14 @@
-"""Where the unknowns are, and where the entries of brick matrices go in a layer's step."""
+"""Numbering of the unknowns, and the places of brick matrices in a layer's step."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fem.arrays import IntArray
 from fem.material import PAIRS
 from fem.mesh import Mesh
-
-IntArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

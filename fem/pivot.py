@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem import blas
-
-FloatArray = NDArray[np.float64]
+from fem.arrays import FloatArray
 
 
 class Pivot:

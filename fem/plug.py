@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fem.arrays import FloatArray
 from fem.mesh import Mesh
 from fem.pressure import Cap, face_volumes, skew
 from fem.sections import best_rotation
-
-FloatArray = NDArray[np.float64]
 
 
 class Plug:

@@ -10,11 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fem.arrays import FloatArray
 from fem.element import volume_form
-
-FloatArray = NDArray[np.float64]
 
 
 def face_volumes(x: FloatArray, tangent: bool) -> tuple[FloatArray, FloatArray, FloatArray | None]:

@@ -11,11 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fem.arrays import FloatArray
 from fem.mesh import Mesh
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

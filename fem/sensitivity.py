@@ -1,4 +1,4 @@
-"""How angles and the object-facing line answer to small changes, by direct differentiation.
+"""Derivatives of angles and of the object-facing line, by direct differentiation.
 
 At equilibrium R(x; p) = 0, so dx/dp = -K^-1 dR/dp with the tangent K at the state itself: one
 back-substitution a parameter. dR/dp at fixed positions is taken by central differences of the
@@ -16,14 +16,13 @@ from numpy.typing import NDArray
 
 from fem import blas, measure
 from fem.actuator import Actuator
+from fem.arrays import FloatArray
 from fem.assembly import Forces, System
 from fem.errors import FemError
 from fem.items import MakeItem
 from fem.mesh import Mesh, alike, make_mesh, remesh
 from fem.parameters import LENGTH_STEP, Parameter, families
 from fem.transfer import settle
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -122,6 +121,11 @@ def sensitivities(
         NaN otherwise.
     extra : sequence of MakeItem
         What contributes to the energy beside bricks, gauze and air; see `fem.items`.
+
+    Returns
+    -------
+    Sensitivities
+        By the pressure, each uncut sector, each cut's length, each wrapped length and the wall.
 
     Raises
     ------

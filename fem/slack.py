@@ -15,13 +15,10 @@ Newton in a few unknowns.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem import gauze
+from fem.arrays import FloatArray, IntArray
 from fem.assembly import Inverse, System
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _ROUNDS = 4
 _MOST = 600  # switching points up to which this pays

@@ -6,12 +6,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fem.arrays import FloatArray
 from fem.element import Reference
 from fem.material import PAIRS, Kinematics, Law, kinematics
-
-FloatArray = NDArray[np.float64]
 
 
 class Workspace:

@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from fem import measure
+from fem.arrays import FloatArray
 from fem.equilibrium import Critical, Equilibrium
 from fem.errors import Attempt
 from fem.mesh import Mesh
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fem.arrays import FloatArray
 from fem.element import natural_nodes, shape
 from fem.mesh import Mesh
 from fem.sections import best_rotation, best_rotations, rotation_matrix, rotation_vector
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 def transfer(old: Mesh, x: FloatArray, new: Mesh) -> FloatArray:

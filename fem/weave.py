@@ -1,4 +1,4 @@
-"""Where the threads run on a mesh's outer faces, and what of them a window leaves uncut."""
+"""Threads on a mesh's outer faces, and the part of them that a window leaves uncut."""
 
 from __future__ import annotations
 
@@ -6,14 +6,12 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.actuator import Actuator, Window
+from fem.arrays import FloatArray
 from fem.element import face_nodes, natural_nodes, shape
 from fem.gauze import Gauze, Threads
 from fem.meshsize import MeshSize, one_brick, start_angle
-
-FloatArray = NDArray[np.float64]
 
 
 def _face_gradient(size: MeshSize, eta: FloatArray, zeta: FloatArray) -> FloatArray:

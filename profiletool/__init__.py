@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from profiletool.records.picture import Picture
     from profiletool.records.profile import DrawnLine, Profile
     from profiletool.records.request import Request, TubeSpec
+    from profiletool.report.figures import figures_of
     from profiletool.subject.find import Subject
     from profiletool.verify.check import Check
 
@@ -50,6 +51,7 @@ __all__ = [
     "TubeSpec",
     "derive_formula",
     "design",
+    "figures_of",
     "files_of",
     "find_subject",
     "formula_file",
@@ -76,6 +78,7 @@ _HOMES = {
     "TubeSpec": "records.request",
     "derive_formula": "api",
     "design": "api",
+    "figures_of": "report.figures",
     "files_of": "outputs",
     "find_subject": "api",
     "formula_file": "campaign.formula_file",

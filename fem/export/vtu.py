@@ -14,11 +14,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from fem.arrays import FloatArray, IntArray
 from fem.element import natural_nodes
-from fem.material import FloatArray
 from fem.mesh import Mesh
-
-IntArray = NDArray[np.int64]
 
 _CELL_TYPE = {"hex20": 25, "hex8": 12}  # VTK_QUADRATIC_HEXAHEDRON, VTK_HEXAHEDRON
 _CORNERS = ((-1, -1), (1, -1), (1, 1), (-1, 1))

@@ -7,7 +7,6 @@ A law is any record that follows the protocol `Law`. Those that come along are `
 from fem.material.invariant import Curvatures, InvariantLaw
 from fem.material.kinematics import (
     PAIRS,
-    FloatArray,
     Kinematics,
     cofactor,
     determinant,
@@ -25,7 +24,6 @@ __all__ = [
     "PAPER_RUBBER",
     "Constant",
     "Curvatures",
-    "FloatArray",
     "InvariantLaw",
     "Kinematics",
     "Law",

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem.material.kinematics import PAIRS, FloatArray, Kinematics, pair
+from fem.arrays import FloatArray
+from fem.material.kinematics import PAIRS, Kinematics, pair
 from fem.material.protocol import Quadratic, add_cofactor_slope
 
 Value = float | FloatArray

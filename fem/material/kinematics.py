@@ -9,9 +9,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from fem.arrays import FloatArray
 
 # The pairs (i, k) of spatial indices that a tangent A_ijkl is stored for; A_ijkl = A_klij.
 PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))

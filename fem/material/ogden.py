@@ -7,7 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from fem.material.kinematics import PAIRS, FloatArray, Kinematics
+from fem.arrays import FloatArray
+from fem.material.kinematics import PAIRS, Kinematics
 from fem.material.protocol import Constant, Quadratic, add_volumetric, bulk_modulus
 
 _CROSSED = ((0, 1), (1, 2), (2, 0))  # pairs of principal directions

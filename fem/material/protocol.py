@@ -13,7 +13,8 @@ from typing import Protocol
 
 import numpy as np
 
-from fem.material.kinematics import NEXT, PAIRS, FloatArray, Kinematics, kinematics
+from fem.arrays import FloatArray
+from fem.material.kinematics import NEXT, PAIRS, Kinematics, kinematics
 
 Constant = float | tuple[float, ...]
 

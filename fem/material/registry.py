@@ -30,6 +30,11 @@ def law(name: str, constants: Mapping[str, float | Sequence[float]]) -> Law:
         What the law's ``constants`` gives, MPa but for exponents; ``nu``, Poisson's ratio at
         small strain, may take the place of ``K``.
 
+    Returns
+    -------
+    Law
+        One of the records in `LAWS`.
+
     Raises
     ------
     ValueError

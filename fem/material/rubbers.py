@@ -5,14 +5,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from fem.arrays import FloatArray
 from fem.material.invariant import Curvatures, InvariantLaw, Value
-from fem.material.kinematics import FloatArray
 from fem.material.protocol import Constant, bulk_modulus
 
 
 @dataclass(frozen=True)
 class MooneyRivlin(InvariantLaw):
     """W_iso = C10 (I1bar - 3) + C01 (I2bar - 3): C10, C01 and the bulk modulus K, MPa.
+
+    Attributes
+    ----------
+    C10, C01 : float, MPa
+    K : float, MPa
+        Bulk modulus.
 
     Raises
     ------
@@ -62,6 +68,12 @@ class MooneyRivlin(InvariantLaw):
 @dataclass(frozen=True)
 class NeoHooke(InvariantLaw):
     """W_iso = C10 (I1bar - 3): C10 and the bulk modulus K, MPa.
+
+    Attributes
+    ----------
+    C10 : float, MPa
+    K : float, MPa
+        Bulk modulus.
 
     Raises
     ------
@@ -114,6 +126,12 @@ class Yeoh(InvariantLaw):
     Yeoh, Rubber Chem. Technol. 66 (1993) 754. C20 is often negative (the rubber turns softer
     first) and C30 positive (it stiffens at large stretches). Where dW/dx falls below 0 the rubber
     is not stable; the path then ends there.
+
+    Attributes
+    ----------
+    C10, C20, C30 : float, MPa
+    K : float, MPa
+        Bulk modulus.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What the commands share: options, one-line errors with their exit codes, words on stderr."""
+"""Shared parts of the commands: options, one-line errors with exit codes, progress on stderr."""
 
 from __future__ import annotations
 

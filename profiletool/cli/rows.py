@@ -50,7 +50,7 @@ def _default(row: Option, usual: Request) -> Any:
     value = row.value(usual)
     if "default:" in row.help:
         return None
-    return str(value) if row.kind.count == 1 else value
+    return f"{value:g}" if row.kind.count == 1 else value
 
 
 def _annotation(row: Option) -> Any:

@@ -23,10 +23,9 @@ from numpy.typing import NDArray
 from profiletool.records.design import Misfit
 from profiletool.records.frames import Shape, cross, direction
 from profiletool.records.profile import Profile
-from profiletool.records.units import FloatArray
+from profiletool.records.units import BoolArray, FloatArray
 
 Values = NDArray[np.floating[Any]]  # float32 in dynamic programming, float64 elsewhere
-BoolArray = NDArray[np.bool_]
 
 DEPTH_WEIGHT = 4.0  # of the square of what lies deeper in the object than it may
 TOO_LONG_WEIGHT = 1.0  # of the square of a mm of tube beyond the longest, against one of distance

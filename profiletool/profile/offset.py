@@ -1,4 +1,4 @@
-"""What a tube can reach of an object, and the curves at a distance from a profile.
+"""Reach of a tube around an object, and the curves at a distance from a profile.
 
 Side convention: the tube lies outside the object, which is to the right of the travel direction
 for ``side == "left"`` and to its left for ``"right"``.

@@ -10,7 +10,7 @@ from profiletool.report.tables import AskedOption
 def options_of(request: Request) -> tuple[AskedOption, ...]:
     """Options that differ from their defaults, and the main ones that do not.
 
-    Files are told by their names alone: where they lay is nobody's business.
+    Files are listed by their names, without their folders.
     """
     usual = Request(request.file)
     shown = ((row, AskedOption(row.flag, row.shown(request), row.shown(usual))) for row in DESIGN)

@@ -11,17 +11,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from profiletool.records.design import Design
 from profiletool.records.fe import Verification
 from profiletool.records.frames import Shape
-from profiletool.records.units import FloatArray
+from profiletool.records.units import FloatArray, IntArray
 
 _POINTS = 84  # of a line, at most some more
 _PER_MM = 100
-
-IntArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

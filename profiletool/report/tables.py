@@ -162,7 +162,7 @@ def provenance(
         )
         for option in options
     ]
-    heads = ("AskedOption", "asked", "default")
+    heads = ("Option", "asked", "default")
     return joined((pairs(rows), table(heads, asked, "What was asked for", "words")))
 
 

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize_scalar
 
-from fem.material import FloatArray, Law, MooneyRivlin, kinematics
+from fem.arrays import FloatArray
+from fem.material import Law, MooneyRivlin, kinematics
 from profiletool.errors import UnreadableInput
 from profiletool.files.columns import NUMBER, read_lines, shown
 
@@ -86,7 +87,7 @@ def uniaxial_stress(law: Law, stretch: ArrayLike) -> FloatArray:
 
 
 def fit_uniaxial(stretch: ArrayLike, stress_MPa: ArrayLike, nu: float) -> UniaxialFit:
-    """UniaxialFit C10, C01 >= 0 to nominal stress against stretch by least squares.
+    """Fit C10, C01 >= 0 to nominal stress against stretch by least squares.
 
     The curve is that of `uniaxial_stress`, so that a test of the very law comes out exactly. At a
     given nu it is C10 + C01 times a curve that only the share of C01 shapes; the best sum is then

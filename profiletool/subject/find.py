@@ -1,4 +1,4 @@
-"""What a design is for: the object or drawing, its scale, and the profile to follow."""
+"""The subject of a design: the object or drawing, its scale, and the profile to follow."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What draughtsmen draw with: dashes, chain lines, dimensions; and no line drawn twice."""
+"""Elements of a technical drawing: dashes, chain lines, dimensions; no line drawn twice."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the writers draw: plain polylines on layers, mm, y up."""
+"""A drawing for the writers: plain polylines on layers, mm, y up."""
 
 from __future__ import annotations
 

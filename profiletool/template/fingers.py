@@ -1,4 +1,4 @@
-"""How many fingers a palm can carry, and where: what clears what around the object's axis.
+"""Fingers around a palm: their number and places, by the clearances between them.
 
 Glossary
 --------

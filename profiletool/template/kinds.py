@@ -1,4 +1,4 @@
-"""What a template can be, in words: a sheet of gauze to roll, a sleeve's pattern, a paper strip."""
+"""Kinds of template and their words: a sheet of gauze, a sleeve's pattern, a paper strip."""
 
 from __future__ import annotations
 

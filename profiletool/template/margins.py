@@ -1,4 +1,4 @@
-"""What stands around the piece on its sheet: register line, names of edges and ends, arrows."""
+"""Marks around the piece on its sheet: register line, names of edges and ends, arrows."""
 
 from __future__ import annotations
 

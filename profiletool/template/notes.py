@@ -1,4 +1,4 @@
-"""What the sheet tells the person at the bench: title, warnings, legend, check measures."""
+"""Notes on the sheet for the bench: title, warnings, legend, check measures."""
 
 from __future__ import annotations
 

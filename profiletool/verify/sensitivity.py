@@ -1,4 +1,4 @@
-"""What small errors of the build do to the bent shape, by FE's own derivatives at its state."""
+"""Sensitivity of the bent shape to small errors of the build, by FE's own derivatives."""
 
 from __future__ import annotations
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from PIL import Image
 
 from profiletool import (
@@ -14,6 +15,7 @@ from profiletool import (
     Profile,
     Request,
     design,
+    figures_of,
     files_of,
     find_subject,
     load_design,
@@ -109,6 +111,17 @@ def test_files_as_bytes(made: Result, tmp_path: Path) -> None:
     (tmp_path / "design.json").write_bytes(files["design.json"])
     read = load_design(tmp_path / "design.json")
     assert len(read.joints) == len(made.design.joints)
+
+
+def test_figures_for_a_notebook(made: Result) -> None:
+    figures = figures_of(made)
+    assert list(figures) == ["overlay", "error_along_arc", "trade_off"]
+    assert all(isinstance(figure, Figure) for figure in figures.values())
+    assert figures["overlay"].axes[0].get_aspect() == 1.0
+    assert "egg.png" in str(made)
+    assert "NOT VERIFIED" in str(made)
+    assert len(repr(made)) < 120
+    assert made._repr_html_().startswith("<pre>egg.png: ")
 
 
 def test_a_wrong_option_is_named() -> None:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import ast
+import re
 
 import pytest
 
-from tests.house.measures import Measures, measures, node_lines, parameters
+from tests.house.measures import PACKAGES, ROOT, Measures, measures, node_lines, parameters
 
 # To be split when they are next worked on; nothing may be added here.
 LONG_FILES: set[str] = set()
@@ -37,6 +38,15 @@ def test_bounds_on_lengths_and_parameters(found: Measures) -> None:
     assert set(found.long_files) == LONG_FILES
     assert set(found.long_functions) == LONG_FUNCTIONS
     assert set(found.wide_functions) == COMMANDS
+
+
+def test_module_docstrings_say_the_noun_first() -> None:
+    riddles = re.compile(r"(What|How|Where|When|Who|Whether|Which|Why)\b")
+    for package in (*PACKAGES, "benchmarks"):
+        for file in (ROOT / package).rglob("*.py"):
+            text = ast.get_docstring(ast.parse(file.read_text("utf-8"))) or ""
+            assert text, file
+            assert not riddles.match(text), f"{file}: {text.splitlines()[0]}"
 
 
 def test_what_is_counted() -> None:

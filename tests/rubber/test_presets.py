@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fem.material import PAPER_RUBBER, FloatArray, NeoHooke, Ogden, Yeoh, full_tangent, kinematics
+from fem.arrays import FloatArray
+from fem.material import PAPER_RUBBER, NeoHooke, Ogden, Yeoh, full_tangent, kinematics
 from profiletool.errors import UnreadableInput, UsageError
 from profiletool.records.rubber import constants_text, law_of
 from profiletool.rubber.presets import NUS, PRESETS, Rubber, parse_rubber, presets_text

@@ -8,7 +8,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from fem.material import PAPER_RUBBER, FloatArray, MooneyRivlin, kinematics
+from fem.arrays import FloatArray
+from fem.material import PAPER_RUBBER, MooneyRivlin, kinematics
 from profiletool.errors import UnreadableInput
 from profiletool.rubber.presets import NUS
 from profiletool.rubber.uniaxial import (

@@ -1,4 +1,4 @@
-"""What a picture looks like across an outline, and the outline moved to where its edge is."""
+"""Colours across an outline, and the outline moved to where its edge is."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What could be the object, by several methods, each judged by the same measure."""
+"""Candidates for the object, by several methods, each judged by the same measure."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the user says about where the object is."""
+"""Hints of the user: a box, a point or a mask of the object."""
 
 from __future__ import annotations
 

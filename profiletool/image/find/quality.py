@@ -1,4 +1,4 @@
-"""How far a mask deserves to be believed: by its edge, its colours and its shape."""
+"""Confidence in a mask: by its edge, its colours and its shape."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which pixels are the object, roughly: to a pixel or two, but the right thing and all of it."""
+"""The pixels of the object, to a pixel or two: the right thing, and all of it."""
 
 from __future__ import annotations
 

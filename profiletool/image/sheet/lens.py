@@ -1,4 +1,4 @@
-"""Where the camera stood and what its lens did, from the corners of one flat sheet.
+"""Pose and lens of the camera, from the corners of one flat sheet.
 
 A pinhole with its axis through the middle of the picture and radial distortion
 x' = x (1 + k1 r^2 + k2 r^4) with r in units of the focal length (Brown 1971). One view of a plane

@@ -1,4 +1,4 @@
-"""The size of an object on the printed sheet: its outline and scale, and how sure they are."""
+"""Size of an object on the printed sheet: outline, scale and their error."""
 
 from __future__ import annotations
 

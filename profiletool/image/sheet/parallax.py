@@ -1,4 +1,4 @@
-"""What stands above the sheet looks larger: by how much, and what of it stays unknown.
+"""Parallax of what stands above the sheet: its size, and what of it stays unknown.
 
 Frames: plan coordinates in mm on the sheet, as in the picture x to the right, y down; heights
 count up from the sheet. The camera stands at height H over its foot.

@@ -11,13 +11,11 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
 from profiletool.joints.misfit import Deviation, Objective
-from profiletool.records.units import FloatArray
+from profiletool.records.units import BoolArray, FloatArray
 
-BoolArray = NDArray[np.bool_]
 # mm for a change by the scale: what moves nothing stays where it is, and all is looked for
 # nearby, where the model holds.
 _DAMPING, _BUILT_DAMPING = 0.1, 0.05

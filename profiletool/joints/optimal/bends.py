@@ -15,12 +15,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from profiletool.bending.model import Model
-from profiletool.records.units import FloatArray
-
-Float32 = NDArray[np.float32]
+from profiletool.records.units import Float32, FloatArray
 
 LEAST_TURN = float(np.radians(3.0))  # a joint that turns less is none
 STEP_MM = 0.25  # spacing of tabulated places

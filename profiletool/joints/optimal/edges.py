@@ -17,10 +17,9 @@ from numpy.typing import NDArray
 
 from profiletool.joints.misfit import LENGTH_COST_MM2, Deviation, Objective
 from profiletool.joints.optimal.bends import STEP_MM, Bends
-from profiletool.joints.optimal.lines import CandidateLines, IntArray
-from profiletool.records.units import FloatArray
+from profiletool.joints.optimal.lines import CandidateLines
+from profiletool.records.units import Float32, FloatArray, IntArray
 
-Float32 = NDArray[np.float32]
 _BACK_MM = 30.0  # a first vertex may lie so far behind the profile's start
 
 

@@ -15,15 +15,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from profiletool.joints.bounds import Limits
 from profiletool.profile.curve import points_at
 from profiletool.records.frames import base_axes, direction, outward
 from profiletool.records.profile import Profile
-from profiletool.records.units import FloatArray
-
-IntArray = NDArray[np.intp]
+from profiletool.records.units import FloatArray, IntArray
 
 _BEYOND_MM = 20.0
 _CORNER_RAD = 0.2  # turn from place to place that makes a corner

@@ -16,10 +16,10 @@ from profiletool.joints.correction.parameters import PosedChain
 from profiletool.joints.misfit import Objective, objective_of
 from profiletool.joints.optimal.bends import Bends, tabulate
 from profiletool.joints.optimal.edges import Edges, Priced, edges_of, price, summed_cost
-from profiletool.joints.optimal.lines import CandidateLines, Discretisation, IntArray, lines_of
+from profiletool.joints.optimal.lines import CandidateLines, Discretisation, lines_of
 from profiletool.records.frames import Pose, base_axes
 from profiletool.records.profile import Profile
-from profiletool.records.units import FloatArray
+from profiletool.records.units import FloatArray, IntArray
 
 MOST_JOINTS = 24
 _FIRST_MOST_MM = 1.0  # RMS that edges may cost at first

@@ -11,15 +11,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from profiletool.bending.kinematics import facing_stretch
 from profiletool.records.frames import cross, direction
 from profiletool.records.profile import Profile
-from profiletool.records.units import FloatArray
-
-IntArray = NDArray[np.intp]
-BoolArray = NDArray[np.bool_]
+from profiletool.records.units import BoolArray, FloatArray, IntArray
 
 _STRAIGHT_RAD = np.radians(0.5)  # less turn than this is no joint
 _BLOCKED_MM = 1000.0  # cost of a pair of lines that do not meet between their break points

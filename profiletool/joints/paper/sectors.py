@@ -20,10 +20,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from profiletool.joints.paper.pieces import IntArray, Pieces, Rules, pieces_from
+from profiletool.joints.paper.pieces import Pieces, Rules, pieces_from
 from profiletool.records.frames import cross, direction
 from profiletool.records.profile import Profile
-from profiletool.records.units import FloatArray
+from profiletool.records.units import FloatArray, IntArray
 
 _GRID_SHARE = 0.1  # of the tube's radius: break points are tried this far apart
 _GRID_TURN_RAD = np.radians(6.0)  # or closer, where the profile turns
