@@ -34,6 +34,9 @@ PLAN = CampaignPlan(
     20.0, 2.0, PRESETS["paper"], (84.0, 108.0, 120.0, 132.0, 156.0), (6.0, 8.0, 10.0, 12.0, 14.0),
     tuple(round(0.2 * k, 9) for k in range(1, 11)),
 )  # fmt: skip
+SMALLEST = replace(
+    PLAN, alpha_deg=(84.0, 120.0, 156.0), openF_mm=(6.0, 8.0, 10.0), pressures_bar=(0.1, 0.2)
+)
 
 
 def campaign(
@@ -47,16 +50,18 @@ def campaign(
     return derive(plan, runs, base)
 
 
-def speed() -> None:
-    """Time the default campaign from nothing."""
+def speed(plan: CampaignPlan) -> None:
+    """Time a campaign from nothing."""
     taken = {}
     for workers in (2, 1, 2, 1):
         with tempfile.TemporaryDirectory() as folder:
             begun = time.perf_counter()
-            campaign(PLAN, Store(Path(folder), JOINT_RUN), workers)
+            campaign(plan, Store(Path(folder), JOINT_RUN), workers)
             seconds = time.perf_counter() - begun
         taken[workers] = min(seconds, taken.get(workers, np.inf))
-        print(f"  25 runs of 10 pressures, {workers} workers: {seconds:.1f} s", flush=True)
+        runs, pressures = len(plan.alpha_deg) * len(plan.openF_mm), len(plan.pressures_bar)
+        print(f"  {runs} runs of {pressures} pressures, {workers} workers: {seconds:.1f} s",
+              flush=True)  # fmt: skip
     print(f"  two workers are {taken[1] / taken[2]:.2f} times as fast as one")
 
 
@@ -77,7 +82,7 @@ def against_formula_9(found: Derivation) -> None:
     )
 
 
-def similar(store: JointStore, known: Derivation) -> None:
+def similar(plan: CampaignPlan, store: JointStore, known: Derivation) -> None:
     """Compare campaigns from five runs with whole ones."""
     base = Base(parse_formula(formula_file(known, "default"), "default"), known.data)
     law = PAPER_RUBBER
@@ -85,15 +90,15 @@ def similar(store: JointStore, known: Derivation) -> None:
         "twice", MooneyRivlin(2.0 * law.C10, 2.0 * law.C01, 2.0 * law.K), "twice the paper's"
     )
     plans = {
-        "D 16, wall 1.6": replace(PLAN, diameter_mm=16.0, wall_mm=1.6),
-        "twice as stiff": replace(PLAN, rubber=hard),
+        "D 16, wall 1.6": replace(plan, diameter_mm=16.0, wall_mm=1.6),
+        "twice as stiff": replace(plan, rubber=hard),
     }
-    for name, plan in plans.items():
-        whole, few = campaign(plan, store), campaign(plan, store, base=base)
+    for name, other_plan in plans.items():
+        whole, few = campaign(other_plan, store), campaign(other_plan, store, base=base)
         off = few.data.theta_deg / whole.data.theta_deg - 1.0
         alpha, openF, P, theta = whole.data.points
         one, other = (
-            theta_deg(formula_of(plan, found.chosen.terms), alpha, openF, P)
+            theta_deg(formula_of(other_plan, found.chosen.terms), alpha, openF, P)
             for found in (few, whole)
         )
         apart = np.abs(one - other)
@@ -106,9 +111,9 @@ def similar(store: JointStore, known: Derivation) -> None:
         )
 
 
-def as_the_paper(store: JointStore) -> None:
+def as_the_paper(plan: CampaignPlan, store: JointStore) -> None:
     """Compare the refitted coefficients of the paper's model with its Table 3."""
-    found = campaign(replace(PLAN, model="paper"), store)
+    found = campaign(replace(plan, model="paper"), store)
     assert found.paper is not None
     published = read_tree(read_bytes("paper"), "paper")["coefficients"]
     rows = [
@@ -129,18 +134,22 @@ def main() -> None:
     parser.add_argument("--speed", action="store_true")
     parser.add_argument("--similar", action="store_true")
     parser.add_argument("--paper", action="store_true")
+    parser.add_argument(
+        "--smallest", action="store_true", help="nine joints to 0.2 bar, which measure nothing"
+    )
     parser.add_argument("--runs", type=Path, default=default_folder())
     options = parser.parse_args()
     print(machine(), flush=True)
+    plan = SMALLEST if options.smallest else PLAN
     if options.speed:
-        speed()
+        speed(plan)
     store = Store(options.runs, JOINT_RUN)
-    known = campaign(PLAN, store)
+    known = campaign(plan, store)
     against_formula_9(known)
     if options.similar:
-        similar(store, known)
+        similar(plan, store, known)
     if options.paper:
-        as_the_paper(store)
+        as_the_paper(plan, store)
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from PIL import Image, ImageDraw
 
@@ -26,6 +27,14 @@ def unverified(*arguments: object) -> Result:
     return call("design", *arguments, "--no-verify")
 
 
+def arc(folder: Path) -> Path:
+    """Draw a quarter of a circle of 30 mm, which one or two joints follow."""
+    angle = np.linspace(0.0, 0.5 * np.pi, 60)
+    points = 30.0 * np.column_stack([-np.sin(angle), np.cos(angle)])
+    np.savetxt(folder / "arc.csv", points, delimiter=",", fmt="%.4f")
+    return folder / "arc.csv"
+
+
 def picture(path: Path, *, blank: bool = False, **save: object) -> Path:
     image = Image.new("RGB", (300, 400), (235, 232, 228))
     if not blank:
@@ -37,14 +46,17 @@ def picture(path: Path, *, blank: bool = False, **save: object) -> Path:
 def ending_early(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let every FE run meet a limit point half-way."""
     import fem
+    from profiletool.verify import run
+
+    solve = run.solve
 
     def stopped(*arguments: object, **options: object) -> fem.Solution:
-        found = fem.solve(*arguments, **options)
+        found = solve(*arguments, **options)
         middle = len(found.states) // 2
         ended = fem.Critical("limit point", found.states[middle].pressure)
         return replace(found, states=found.states[:middle], critical=ended)
 
-    monkeypatch.setattr("profiletool.verify.run.solve", stopped)
+    monkeypatch.setattr(run, "solve", stopped)
 
 
 def never_converging(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,14 +5,19 @@ from __future__ import annotations
 import csv
 import io
 import json
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from fem.gauze import Gauze
+from fem.loadpath import Options
+from fem.meshsize import MeshSize
 from fem.solver import solve
 from formula.files import campaign_of, load_formula, read_bytes
 from formula.theta import theta_deg
+from profiletool.campaign import runs
 from profiletool.records.request import TubeSpec
 from profiletool.verify.tube import joint_actuator
 from tests.calls import call, error_of
@@ -20,10 +25,22 @@ from tests.calls import call, error_of
 SMALL = ("--alpha", "84,120,156", "--openF", "8,12", "--max-pressure", "0.4", "--workers", "1")
 
 
+COARSE = MeshSize(beside=0.0, edge=1.0)
+
+
 @pytest.fixture(autouse=True)
 def in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PROFILETOOL_RUNS", str(tmp_path / "runs"))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def coarse_mesh() -> Iterator[None]:
+    """Run joints on a coarse mesh: the commands are tested here, not the engine's error."""
+    with pytest.MonkeyPatch.context() as patch:
+        settings = runs._Settings(Gauze(), COARSE, Options())
+        patch.setattr(runs, "_SETTINGS", {"converged": settings})
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +59,7 @@ def test_a_formula_of_finite_elements(made: Path) -> None:
     tree = json.loads((made / "mine.json").read_text())
     assert tree["name"] == "mine"
     assert tree["campaign"]["runs"] == 6
-    run = solve(joint_actuator(12.0, 120.0, 270.0, TubeSpec()), [0.04], threads=1)
+    run = solve(joint_actuator(12.0, 120.0, 270.0, TubeSpec()), [0.04], COARSE, threads=1)
     known = tree["campaign"]["theta_deg"][1][1][-1]
     assert known == pytest.approx(np.degrees(run.states[-1].theta[0]), rel=1e-6)
     assert tree["fit"]["rms_deg"] < 0.05
@@ -92,6 +109,7 @@ def test_beyond_its_range_it_is_refused_or_marked(made: Path) -> None:
     assert call(*chosen).exit_code != 0
 
 
+@pytest.mark.usefixtures("few_files")
 def test_a_design_has_the_tube_and_the_rubber_of_its_formula(
     made: Path, samples: Path, tmp_path: Path
 ) -> None:

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import csv
 import json
+from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import pytest
 from PIL import Image
 
+import fem
+from profiletool.verify import run
 from tests.calls import call, error_of
 from tests.cli.inputs import REST, ending_early, never_converging
 
@@ -17,6 +21,15 @@ FE_KEYS = [
     "converged", "pressure_bar", "theta_deg", "elements", "nodes", "dofs", "newton_iterations",
     "seconds",
 ]  # fmt: skip
+
+
+@pytest.fixture(scope="module", autouse=True)
+def coarse_mesh() -> Iterator[None]:
+    """Solve on a coarse mesh: the commands are tested here, not the engine's error."""
+    with pytest.MonkeyPatch.context() as patch:
+        coarse = partial(fem.solve, size=fem.MeshSize(beside=0.0, edge=0.4))
+        patch.setattr("profiletool.verify.run.solve", coarse)
+        yield
 
 
 JOINT = ("joint", "--openF", "10", "--alpha", "84", "--pressure", "0.2")
@@ -194,14 +207,13 @@ def test_verify_agrees_with_design(samples: Path, tmp_path: Path) -> None:
 def test_what_was_reached_is_shown_where_a_run_does_not_converge(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    import fem
-
     def stuck(*arguments: object, **options: object) -> fem.Solution:
-        found = fem.solve(*arguments, **options)
+        found = solve(*arguments, **options)
         part = replace(found, states=found.states[:4])
         raise fem.NotConverged("residual", (), part.states[-1].pressure, part)
 
-    monkeypatch.setattr("profiletool.verify.run.solve", stuck)
+    solve = run.solve
+    monkeypatch.setattr(run, "solve", stuck)
     result = call(*JOINT, "--json", "--out", "stuck")
     assert result.exit_code == 7
     assert error_of(result).endswith(

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.calls import call, error_of
-from tests.cli.inputs import REST, ending_early, never_converging, unverified
+from tests.cli.inputs import REST, arc, ending_early, never_converging, unverified
 
 
 def test_exit_6_writes_the_best_attempt(tmp_path: Path) -> None:
@@ -58,15 +58,14 @@ def test_exit_7_writes_the_design_marked_not_verified(
     failing: Callable[[pytest.MonkeyPatch], None],
     says: str,
     method: str,
-    samples: Path,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     failing(monkeypatch)
-    result = call("design", samples / REST, "--method", method, "--no-refine")
+    result = call("design", arc(tmp_path), "--method", method, "--no-refine")
     assert result.exit_code == 7
     assert says in error_of(result)
-    folder = tmp_path / "finger_rest_design"
+    folder = tmp_path / "arc_design"
     design = json.loads((folder / "design.json").read_text())
     assert design["verified"] is False
     assert design["fit"]["fe"] is None

@@ -78,6 +78,7 @@ def test_what_was_asked_for_is_in_the_design_and_the_report(tmp_path: Path) -> N
     file = drawn(tmp_path / "a.png", [turned(PEAR, 30.0)])
     (tmp_path / "look.toml").write_text(
         'rotate = "auto"\nsymmetric = true\npoint = [240, 200]\nbox = "90,50,300,300"\n'
+        'method = "paper"\n'
     )
     result = unverified(file, "--height", 120, "--config", tmp_path / "look.toml")
     assert result.exit_code == 0, result.stderr

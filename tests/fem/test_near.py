@@ -21,8 +21,7 @@ from fem.transfer import transfer
 PRESSURE = 0.12
 SIZE = replace(DEFAULT_MESH, edge=1.0)
 ACTUATOR = chain(
-    10.0, [16.0, 12.0, 12.0], [8.0, 6.0, 8.0], np.radians([110.0, 130.0, 120.0]),
-    np.radians([270.0, 270.0, 90.0]),
+    10.0, [16.0, 12.0], [8.0, 6.0], np.radians([110.0, 130.0]), np.radians([270.0, 90.0])
 )  # fmt: skip
 
 
@@ -34,7 +33,7 @@ def known() -> Solution:
 def changed(alpha_deg: float, places: float, length: float = 0.0) -> Actuator:
     windows = tuple(
         replace(w, alpha=w.alpha + np.radians(alpha_deg) * sign, centre=w.centre + places * sign)
-        for w, sign in zip(ACTUATOR.windows, (1.0, -1.0, 1.0), strict=True)
+        for w, sign in zip(ACTUATOR.windows, (1.0, -1.0), strict=True)
     )
     return replace(ACTUATOR, windows=windows, length=ACTUATOR.length + length)
 
@@ -50,7 +49,8 @@ def test_the_same_actuator_needs_no_step(known: Solution) -> None:
 
 
 @pytest.mark.parametrize(
-    ("alpha_deg", "places", "length"), [(3.0, 0.0, 0.0), (0.0, 0.5, 0.0), (-2.0, 0.3, 1.5)]
+    ("alpha_deg", "places", "length"),
+    [(3.0, 0.0, 0.0), (-2.0, 0.3, 1.5), pytest.param(0.0, 0.5, 0.0, marks=pytest.mark.slow)],
 )
 def test_ends_where_the_path_from_rest_ends(
     known: Solution, alpha_deg: float, places: float, length: float

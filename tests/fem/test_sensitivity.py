@@ -52,7 +52,7 @@ def lengthened(actuator: Actuator, segment: int, by: float) -> Actuator:
     [
         ((270.0, 90.0), "mooney-rivlin"),
         ((250.0, 30.0), "mooney-rivlin"),
-        ((270.0, 90.0), "yeoh"),
+        pytest.param((270.0, 90.0), "yeoh", marks=pytest.mark.slow),
         ((270.0, 90.0), "ogden"),
     ],
 )

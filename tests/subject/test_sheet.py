@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,6 +22,22 @@ from profiletool.subject.photo import Seen
 from profiletool.subject.sheet import distance_note, measure_on_sheet
 from tests.image.views import Shot, bulb, photograph
 from tests.subject.objects import PEAR, SHOT, look_at, size_of
+
+
+@pytest.fixture(scope="module", autouse=True)
+def once() -> Iterator[None]:
+    """Rectify every photograph once: it takes longer than all that is asked of it here."""
+    known: dict[bytes, Rectified | None] = {}
+
+    def rectified(picture: Picture) -> Rectified | None:
+        key = picture.rgb.tobytes()
+        if key not in known:
+            known[key] = rectify(picture)
+        return known[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(photo, "rectify", rectified)
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +80,10 @@ def test_on_the_sheet_nothing_needs_to_be_said_of_size_and_way_up(stood: Seen) -
 
 @pytest.mark.parametrize(
     ("shot", "turn"),
-    [(SHOT, 85.0), (replace(SHOT, tilt=30.0, azimuth=0.0, k1=0.0), 135.0), (SHOT, 40.0)],
+    [
+        (replace(SHOT, tilt=30.0, azimuth=0.0, k1=0.0), 135.0),
+        *(pytest.param(SHOT, turn, marks=pytest.mark.slow) for turn in (85.0, 40.0)),
+    ],
 )
 def test_on_the_sheet_it_may_lie_any_way(tmp_path: Path, shot: Shot, turn: float) -> None:
     """Not turned upright, it has its own size along its own axis all the same."""

@@ -19,6 +19,7 @@ from profiletool.template.dxf import write_dxf
 from profiletool.template.mounting import mounting_drawing
 from tests.template.geometry import coincident, segments
 from tests.template.mounts import (
+    CASES,
     COLOURS,
     assert_lettering_clear,
     ball,
@@ -34,8 +35,17 @@ from tests.template.mounts import (
     wave,
 )
 
+# Every third: three fingers, one around a neck, one on a line, one thin.
+some_cases = pytest.mark.parametrize(
+    "name",
+    [
+        name if k % 3 == 0 else pytest.param(name, marks=pytest.mark.slow)
+        for k, name in enumerate(CASES)
+    ],
+)
 
-@every_case
+
+@some_cases
 def test_dxf_reads_back(name):
     drawing = drawing_of(name)
     doc, auditor = recover.read(io.BytesIO(dxf_of(name)))
@@ -53,7 +63,7 @@ def test_dxf_reads_back(name):
     assert all(e.closed for e in entities if e.dxf.layer.startswith("CUT"))
 
 
-@every_case
+@some_cases
 def test_the_same_design_gives_the_same_bytes(name):
     assert dxf_of(name) == write_dxf(mounting_drawing(*made(name)))
 

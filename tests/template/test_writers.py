@@ -136,7 +136,10 @@ def test_golden_files_reread():
     assert len(root.find(f"{SVG}g[@id='CUT_INNER']")) == 2 * 19 + 3 * 5
 
 
-@pytest.mark.parametrize("build", DESIGNS)
+@pytest.mark.parametrize(
+    "build",
+    [short_tube, *(pytest.param(b, marks=pytest.mark.slow) for b in (bulb, skew, long_tube))],
+)
 def test_r12_holds_the_same_lines(build, caplog):
     sheet = build_sheet(build())
     doc = read_back(write_dxf(sheet.drawing, "R12"))

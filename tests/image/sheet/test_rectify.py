@@ -21,7 +21,7 @@ from tests.image.views import BODIES, POSES, PX_PER_MM, Shot, paper, photograph,
 
 A4, LETTER = BOARDS
 QUICK = ["overhead, 0.5 m", "from below, 30 deg", "near, slanted, barrel"]
-SMALL = Shot(500, 4, 60, size=(600, 800))
+SMALL = Shot(500, 4, 60, size=(540, 720))
 
 
 def rng(seed: int = 5) -> np.random.Generator:
@@ -134,7 +134,7 @@ def test_straight_lens_gets_no_terms() -> None:
 # --- the frontal view ----------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("turns", [1, 2, 3])
+@pytest.mark.parametrize("turns", [1, 2, pytest.param(3, marks=pytest.mark.slow)])
 def test_up_stays_up(turns: int) -> None:
     picture = photograph(A4, BODIES["bulb"], SMALL, rng(), at=(0.0, 0.0))
     turned = replace(picture, rgb=np.ascontiguousarray(np.rot90(picture.rgb, turns)))
@@ -218,8 +218,8 @@ def test_hidden_squares_are_left_as_they_are() -> None:
     ("kind", "shot", "at"),
     [
         ("bulb", replace(POSES["from the side, 30 deg"], size=(720, 960)), (-8.0, 0.0)),
-        ("cylinder", SMALL, (-60.0, 10.0)),
-        ("bulb", replace(SMALL, aim=(60.0, 90.0)), (0.0, 0.0)),
+        pytest.param("cylinder", SMALL, (-60.0, 10.0), marks=pytest.mark.slow),
+        pytest.param("bulb", replace(SMALL, aim=(60.0, 90.0)), (0.0, 0.0), marks=pytest.mark.slow),
     ],
 )
 def test_size_over_the_frame_or_on_part_of_it(
