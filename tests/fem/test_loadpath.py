@@ -17,6 +17,7 @@ from fem.loadpath import Options
 from fem.material import NeoHooke
 from fem.mesh import Mesh
 from fem.meshsize import MeshSize
+from fem.solution import Solution
 from fem.solver import solve
 
 COARSE = MeshSize(around=3, beside=0.0, edge=2.0, growth=2.0)
@@ -44,29 +45,47 @@ def test_pressures_that_make_no_sense(pressure: float) -> None:
         solve(SHORT, [pressure], COARSE)
 
 
-def test_a_balloon_has_a_limit_point_with_its_pressure() -> None:
-    run = solve(balloon(), [0.01, 0.5], COARSE)
+@pytest.fixture(scope="module")
+def stepped() -> Solution:
+    """The balloon by way of three pressures that it stands."""
+    return solve(balloon(), [0.01, 0.02, 0.03, 0.5], COARSE)
+
+
+@pytest.fixture(scope="module")
+def at_once() -> tuple[Solution, list[float]]:
+    """The balloon straight to a pressure that it does not stand, and beyond by its volume.
+
+    With the pressures that were told on the way.
+    """
+    told: list[float] = []
+    return solve(balloon(), [0.5], COARSE, Options(beyond=0.3), progress=told.append), told
+
+
+def test_a_balloon_has_a_limit_point_with_its_pressure(stepped: Solution) -> None:
+    run = stepped
     assert not run.converged
     assert run.critical is not None
     assert run.critical.kind == "limit point"
     # The states up to it are there, and what lies above the limit is not.
-    assert [state.pressure for state in run.states] == [0.0, 0.01]
+    assert [state.pressure for state in run.states] == [0.0, 0.01, 0.02, 0.03]
     # A long thin neo-Hookean tube balloons at hoop stretches of 1.5 to 2: about mu s / r.
     mu, s, r = 0.2, 2.0, 9.0
     assert 0.5 * mu * s / r < run.critical.pressure < 1.2 * mu * s / r
 
 
-def test_the_limit_does_not_depend_on_the_steps() -> None:
-    found = [solve(balloon(), asked, COARSE).critical for asked in ([0.5], [0.01, 0.02, 0.03, 0.5])]
-    assert found[0] is not None
-    assert found[1] is not None
-    assert found[0].pressure == pytest.approx(found[1].pressure, rel=2e-3)
+def test_the_limit_does_not_depend_on_the_steps(
+    stepped: Solution, at_once: tuple[Solution, list[float]]
+) -> None:
+    one, other = stepped.critical, at_once[0].critical
+    assert one is not None
+    assert other is not None
+    assert one.pressure == pytest.approx(other.pressure, rel=2e-3)
 
 
-def test_the_path_goes_on_past_the_limit_by_volume() -> None:
-    reached: list[float] = []
-    options = Options(beyond=0.3)
-    run = solve(balloon(), [0.5], COARSE, options, progress=reached.append)
+def test_the_path_goes_on_past_the_limit_by_volume(
+    at_once: tuple[Solution, list[float]],
+) -> None:
+    run, reached = at_once
     assert run.critical is not None
     assert reached[-1] < run.critical.pressure
     assert max(reached) <= run.critical.pressure * (1.0 + 1e-6)
@@ -88,6 +107,7 @@ def passed_on(error: NotConverged) -> NotConverged:
     return copy
 
 
+@pytest.fixture(scope="module")
 def stuck() -> NotConverged:
     """A path that reaches two asked pressures of three: the rubber is lost at the third."""
     with pytest.raises(NotConverged) as caught:
@@ -99,17 +119,17 @@ class Spoilt:
     """An item that turns every brick inside out once the air inside has grown by 6 %."""
 
     def __init__(self, mesh: Mesh) -> None:
-        self._rest = float(System(mesh, 1).forces(mesh.X).volume)
-        self._mesh = mesh
+        self._system = System(mesh, 1)
+        self._rest = float(self._system.forces(mesh.X).volume)
 
     def add(self, batch: Batch) -> None:
-        x = batch.x.reshape(self._mesh.X.shape)
-        if System(self._mesh, 1).forces(x).volume > SPOILT * self._rest:
+        x = batch.x.reshape(self._system.mesh.X.shape)
+        if self._system.forces(x).volume > SPOILT * self._rest:
             batch.sums.least_J = -1.0
 
 
-def test_not_converged_carries_the_states_that_were_reached() -> None:
-    error = stuck()
+def test_not_converged_carries_the_states_that_were_reached(stuck: NotConverged) -> None:
+    error = stuck
     assert error.solution is not None
     states = error.solution.states
     assert [state.pressure for state in states] == [0.0, 0.02, 0.04]
@@ -132,8 +152,8 @@ def test_not_converged_at_once_carries_the_state_at_rest() -> None:
     assert [state.pressure for state in caught.value.solution.states] == [0.0]
 
 
-def test_not_converged_goes_from_process_to_process() -> None:
-    error = stuck()
+def test_not_converged_goes_from_process_to_process(stuck: NotConverged) -> None:
+    error = stuck
     copy = passed_on(error)
     assert str(copy) == str(error)
     assert (copy.history, copy.reached) == (error.history, error.reached)

@@ -11,6 +11,7 @@ import pytest
 from fem.actuator import Actuator, Window, chain
 from fem.errors import NotConverged
 from fem.mesh import alike, make_mesh
+from fem.meshsize import DEFAULT_MESH
 from fem.near import between, solve_near
 from fem.sensitivity import flow_to, sensitivities
 from fem.solution import Solution
@@ -18,6 +19,7 @@ from fem.solver import solve
 from fem.transfer import transfer
 
 PRESSURE = 0.12
+SIZE = replace(DEFAULT_MESH, edge=1.0)
 ACTUATOR = chain(
     10.0, [16.0, 12.0, 12.0], [8.0, 6.0, 8.0], np.radians([110.0, 130.0, 120.0]),
     np.radians([270.0, 270.0, 90.0]),
@@ -26,7 +28,7 @@ ACTUATOR = chain(
 
 @pytest.fixture(scope="module")
 def known() -> Solution:
-    return solve(ACTUATOR, [PRESSURE])
+    return solve(ACTUATOR, [PRESSURE], SIZE)
 
 
 def changed(alpha_deg: float, places: float, length: float = 0.0) -> Actuator:
@@ -54,7 +56,7 @@ def test_ends_where_the_path_from_rest_ends(
     known: Solution, alpha_deg: float, places: float, length: float
 ) -> None:
     actuator = changed(alpha_deg, places, length)
-    near, path = solve_near(actuator, known, PRESSURE), solve(actuator, [PRESSURE])
+    near, path = solve_near(actuator, known, PRESSURE), solve(actuator, [PRESSURE], SIZE)
     assert near.mesh.actuator == actuator
     assert near.states[-1].residual <= 1e-6
     assert np.isnan(near.states[-1].energy_error)  # not known, and not said to be fine
@@ -66,7 +68,7 @@ def test_ends_where_the_path_from_rest_ends(
 
 def test_another_pressure(known: Solution) -> None:
     near = solve_near(ACTUATOR, known, 0.9 * PRESSURE)
-    path = solve(ACTUATOR, [0.9 * PRESSURE])
+    path = solve(ACTUATOR, [0.9 * PRESSURE], SIZE)
     np.testing.assert_allclose(near.states[-1].theta, path.states[-1].theta, rtol=1e-5)
 
 
@@ -85,10 +87,10 @@ def test_an_expected_motion_of_another_mesh_is_left(known: Solution) -> None:
     windows = list(ACTUATOR.windows)
     windows[1] = replace(windows[1], alpha=windows[1].alpha + np.radians(25.0))
     actuator = replace(ACTUATOR, windows=tuple(windows))
-    assert not alike(make_mesh(actuator, like=known.mesh), known.mesh)
+    assert not alike(make_mesh(actuator, SIZE, like=known.mesh), known.mesh)
     flow = np.zeros_like(known.mesh.X)
     near = solve_near(actuator, known, PRESSURE, flow=flow)
-    path = solve(actuator, [PRESSURE])
+    path = solve(actuator, [PRESSURE], SIZE)
     np.testing.assert_allclose(near.states[-1].theta, path.states[-1].theta, atol=2e-3)
 
 
@@ -128,7 +130,7 @@ def test_transfer_keeps_strains_where_a_sector_grows(known: Solution) -> None:
         length=ACTUATOR.length + 2.0,
         windows=tuple(replace(w, centre=w.centre + 2.0) for w in ACTUATOR.windows),
     )
-    mesh = make_mesh(longer, like=known.mesh)
+    mesh = make_mesh(longer, SIZE, like=known.mesh)
     x = transfer(known.mesh, known.states[-1].x, mesh)
     # All but the root, which is straight, is the same body, moved by 2 mm.
     before = known.states[-1].shape.facing

@@ -76,7 +76,7 @@ def formula(alpha: float, openF: float, P: float) -> float:
 
 @pytest.mark.parametrize("case", [(84.0, 10.0), (108.0, 14.0), (156.0, 8.0)])
 def test_joint_against_the_reference(shared: Path, case: tuple[float, float]) -> None:
-    known = campaign(shared, "joint_campaign.csv")[case]
+    known = campaign(shared, "joint_campaign.csv")[case][4::5]  # half-way, and the last
     run = solve(joint(*case), [P / 10.0 for P, _ in known])
     check(run)
     np.testing.assert_allclose(angles(run)[:, 0], [theta for _, theta in known], rtol=0.02)
@@ -161,7 +161,7 @@ def test_mesh_error_of_the_default() -> None:
 @pytest.mark.parametrize("rubber", EVERY_LAW)
 def test_a_joint_of_any_law_is_inflated(rubber: Law) -> None:
     actuator = chain(30.0, [30.0], [10.0], [np.radians(84.0)], rubber=rubber)
-    run = solve(actuator, [0.05, 0.1])
+    run = solve(actuator, [0.05, 0.1], replace(DEFAULT_MESH, edge=1.0))
     check(run)
     small, large = angles(run)[:, 0]
     assert 0.0 < 2.0 * small < large  # the angle rises faster than the pressure

@@ -18,7 +18,7 @@ from fem.solver import solve
 from tests.fem.laws import RUBBERS
 
 # Even bricks: the mesh itself must not follow the sectors, or it would change with alpha.
-SIZE = MeshSize(around=4, beside=0.0, edge=1.0, growth=2.0)
+SIZE = MeshSize(around=4, beside=0.0, edge=2.0, growth=2.0)
 PRESSURE = 0.1
 
 

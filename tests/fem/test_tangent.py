@@ -10,8 +10,10 @@ import pytest
 from numpy.typing import NDArray
 
 from fem import blas
+from fem.actuator import Actuator, Window
 from fem.assembly import Inverse, System
 from fem.gauze import Gauze
+from fem.mesh import make_mesh
 from fem.meshsize import MeshSize
 from fem.pivot import Pivot
 from fem.sections import Chart, Pose
@@ -160,7 +162,8 @@ TINY = MeshSize(around=2, beside=0.0, growth=2.0, edge=4.0, window=4.0, wrapped=
 def test_indefinite_tangents_are_solved_and_counted(
     center: float, pressure: float, amount: float | None
 ) -> None:
-    system = System(mesh_of(center, TINY, Gauze(slack=1.0)), 1)
+    window = Window(5.0, 3.0, np.radians(90.0), np.radians(center))
+    system = System(make_mesh(Actuator(10.0, (window,), gauze=Gauze(slack=1.0)), TINY), 1)
     pose = Chart(system.mesh).rest() if amount is None else bent(system, 8, amount)
     inverse = factored(system, pose, pressure)
     K = dense(system, pose, pressure)

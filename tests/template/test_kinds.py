@@ -10,6 +10,7 @@ import pytest
 from ezdxf import recover
 from shapely import LineString, Polygon
 
+from profiletool.errors import UsageError
 from profiletool.template.dxf import write_dxf
 from profiletool.template.kinds import KINDS, Wish
 from profiletool.template.layout import build_sheet
@@ -143,7 +144,7 @@ def test_a_slit_no_longer_than_the_kerf_is_left_out_and_told():
 
 @pytest.mark.parametrize("kerf", [-0.1, 1.75, float("nan")])
 def test_a_kerf_that_burns_hoop_threads_is_refused(kerf):
-    with pytest.raises(ValueError, match="does not pass between hoop threads"):
+    with pytest.raises(UsageError, match="does not pass between hoop threads"):
         build_sheet(bulb(), Wish(kerf_mm=kerf))
 
 

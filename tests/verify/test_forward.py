@@ -10,6 +10,7 @@ import pytest
 
 from fem.equilibrium import Critical
 from fem.errors import BadGeometry, NotConverged
+from fem.meshsize import MeshSize
 from fem.solution import Solution
 from profiletool.bending.model import centers_of
 from profiletool.bending.response import Response
@@ -24,6 +25,7 @@ from profiletool.records.request import TubeSpec
 from profiletool.records.units import FloatArray
 from profiletool.verify.forward import FeForwardModel
 
+MESH = MeshSize(beside=0.0)  # kinks at the cuts' edges are as sharp as the layers there are thin
 LIMITS = Limits((1.2, 3.0), (0.02, 0.2), 2.0, 4.0, 10.0, 250.0, 0.2, 3.0)
 NUMBERS = Parameters(
     openF=np.array([8.0, 6.0]),
