@@ -89,7 +89,7 @@ def test_a_mask_settles_it_on_a_blank_picture() -> None:
         (Hint(point=(320, 10)), "outside the picture"),
         (Hint(point=(10, -1)), "outside the picture"),
         (Hint(point=(float("inf"), 1)), "outside the picture"),
-        (Hint(box=(180, 60, 100, 100), point=(90, 110)), "outside --box"),
+        (Hint(box=(180, 60, 100, 100), point=(90, 110)), "outside `box`"),
         (Hint(mask=np.zeros((10, 10), bool)), "picture's size"),
         (Hint(mask=np.zeros(SHAPE, bool)), "empty"),
     ],
