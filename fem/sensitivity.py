@@ -98,6 +98,17 @@ def flow_to(rates: Sensitivities, known: Actuator, new: Actuator, rise: float) -
     return flow
 
 
+def _by_parameter(rates: Sequence[Rate], count: int) -> Sensitivities:
+    """Sort rates: by the pressure, ``count`` sectors and cuts, the wrapped lengths, the wall."""
+    return Sensitivities(
+        pressure=rates[0],
+        alpha=tuple(rates[1 : count + 1]),
+        openF=tuple(rates[count + 1 : 2 * count + 1]),
+        wrapped=tuple(rates[2 * count + 1 : -1]),
+        wall=rates[-1],
+    )
+
+
 def sensitivities(
     mesh: Mesh,
     x: FloatArray,
@@ -154,13 +165,7 @@ def sensitivities(
                 _rate(system, x, forces, du, change, angles)
                 for du, change in zip(flows[1:], every, strict=True)
             ]
-            return Sensitivities(
-                pressure=rates[0],
-                alpha=tuple(rates[1 : count + 1]),
-                openF=tuple(rates[count + 1 : 2 * count + 1]),
-                wrapped=tuple(rates[2 * count + 1 : -1]),
-                wall=rates[-1],
-            )
+            return _by_parameter(rates, count)
         finally:
             system.close()
 

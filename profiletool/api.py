@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from profiletool.campaign.derive import (
     Base,
@@ -39,7 +39,7 @@ from profiletool.subject.find import find_subject as find
 from profiletool.verify.check import Check, check
 from profiletool.verify.recompute import recomputed
 
-Source = str | PathLike[str] | NDArray[Any] | Picture | DrawnLine | Profile
+Source = str | PathLike[str] | ArrayLike | Picture | DrawnLine | Profile
 Say = Callable[[str], None]
 
 
@@ -51,7 +51,8 @@ def design(source: Source | Request, *, say: Say | None = None, **options: Any) 
     source : path, array, Picture, DrawnLine or Profile
         A picture or drawing as the command `design` takes it; (H, W, 3), (H, W, 4) or (H, W)
         uint8 for a picture in RGB, RGBA or grey; (N, 2) for the points of a drawn line, mm, y up,
-        closed where the last point repeats the first; or a profile to follow as it is.
+        closed where the last point repeats the first (what makes such an array will do, as a list
+        of points or an image of Pillow); or a profile to follow as it is.
     say : callable, optional
         Takes one line of progress at a time.
     **options
@@ -218,7 +219,10 @@ def request_for(source: Source | Request, **options: Any) -> Request:
     options |= {name: _path(options.get(name)) for name in ("formula", "mask")}
     if isinstance(source, str | PathLike):
         return request_of(Path(source), options, formula)
-    given = _given(source) if isinstance(source, np.ndarray) else source
+    if isinstance(source, Picture | DrawnLine | Profile):
+        given = source
+    else:
+        given = _given(np.asarray(source))
     if isinstance(given, Profile):
         options["side"] = given.side
     file = Path("picture" if isinstance(given, Picture) else "profile")

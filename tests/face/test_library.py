@@ -73,6 +73,7 @@ def test_points_are_a_drawn_line() -> None:
     assert closed.length_mm == pytest.approx(expected, abs=1.0)
     open_ = find_subject(EGG[100:300]).profile
     assert open_.outline is None
+    assert find_subject(EGG[100:300].tolist()).profile.length_mm == open_.length_mm
     drawing = find_subject(DrawnLine(EGG, closed=True), side="right").profile
     assert drawing.length_mm == pytest.approx(closed.length_mm, abs=1e-6)
 
@@ -82,6 +83,7 @@ def test_points_are_a_drawn_line() -> None:
     [
         (np.zeros((4, 5, 7), np.uint8), UsageError, "an array is a picture"),
         (np.zeros((40, 50, 3)), UsageError, "float64"),
+        (3, UsageError, "an array is a picture"),
         (np.full((9, 2), np.nan), UnreadableInput, "not finite"),
         (np.zeros((2, 2)), UnreadableInput, "points"),
         (np.array([[0, 0], [9, 9], [9, 0], [0, 9.0]]), NoObject, "crosses"),
