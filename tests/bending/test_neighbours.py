@@ -44,6 +44,19 @@ def test_turning_all_joints_to_the_other_side_changes_nothing(modes: np.ndarray)
     assert np.abs(alike - one).max() > 1e-3  # but which side a neighbour bends to does
 
 
+def test_a_chain_turned_end_for_end_is_the_same_chain(modes: np.ndarray) -> None:
+    some = chain(9.0, 1.0, -1.0, 1.0)
+    shifted = replace(some, centre=some.centre - [5.0, 2.0, 0.0])
+    turned = replace(
+        shifted,
+        centre=(shifted.length - PLUG_MM - shifted.centre)[::-1],
+        alpha_center=shifted.alpha_center[::-1],
+    )
+    one, other = (Neighbours(modes).log_factors(c, PRESSURE) for c in (shifted, turned))
+    np.testing.assert_allclose(one, other[::-1], atol=1e-10)
+    assert np.abs(one - one[::-1]).max() > 1e-3
+
+
 def test_ends_alike_see_the_chain_from_both_sides(modes: np.ndarray) -> None:
     """The clamped end and the plug hold alike."""
     factors = Neighbours(modes).log_factors(chain(9.0, 1.0, -1.0, 1.0), PRESSURE)

@@ -41,6 +41,7 @@ def test_a_camera_is_found_back(tilt: float, k: tuple[float, float]) -> None:
         np.radians([tilt, 0.0, 10.0]))[0][2, 2])), abs=0.1)  # fmt: skip
     np.testing.assert_allclose(view.camera_mm, place, rtol=0.01, atol=2.0)
     assert view.terms == (0 if k == (0.0, 0.0) else 1)
+    assert view.values[1] == pytest.approx(k[0], abs=2e-3)  # k1
     assert view.kept.all()
 
 
