@@ -181,7 +181,7 @@ def motions(count: int, held: Sequence[tuple[BoolArray, ArrayLike]]) -> sp.csc_m
     blocks = []
     for rows in normals:
         blocks.append(scipy.linalg.null_space(np.array(rows)) if rows else np.eye(3))
-    return sp.csc_matrix(sp.block_diag(blocks))
+    return sp.csc_matrix(scipy.linalg.block_diag(*blocks))
 
 
 X_AXIS, Y_AXIS, Z_AXIS = np.eye(3)
