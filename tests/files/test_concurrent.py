@@ -280,6 +280,6 @@ def test_two_designs_into_one_folder(samples: Path, tmp_path: Path) -> None:
     ]  # fmt: skip
     said = [run.communicate(timeout=300)[1] for run in runs]
     assert sorted(run.returncode for run in runs) == [0, 2]
-    assert any("exists; replace it with `force`" in line for line in said)
+    assert any("exists; replace it with --force" in line for line in said)
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
     assert (tmp_path / "out" / "report.html").stat().st_size > 1000
