@@ -148,6 +148,7 @@ def test_a_worker_that_is_killed_loses_its_own_run_only(
     assert [to_json(f) for f in there] == [to_json(run(task)) for task in real]
 
 
+@pytest.mark.slow
 def test_a_run_that_kills_every_worker_is_a_failure(
     start: Start, calls: Path, tmp_path: Path
 ) -> None:
@@ -180,6 +181,7 @@ def test_a_worker_without_what_it_takes_says_so_and_lives_on(
     assert there.poll() is None
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_goes_away(start: Start, calls: Path, tmp_path: Path) -> None:
     scheduler, address = start_scheduler(start)
     worker(start, address, **{fake.HELD_AFTER: "2"})  # some are always left to lose

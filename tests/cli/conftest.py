@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -29,10 +30,21 @@ def few_files(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(outputs, "DESIGN_FILES", rows)
 
 
+@pytest.fixture
+def coarse_mesh(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Solve on a coarse mesh: the commands are tested here, not the engine's error."""
+    import fem
+
+    coarse = partial(fem.solve, size=fem.MeshSize(beside=0.0, edge=0.4))
+    monkeypatch.setattr("profiletool.verify.run.solve", coarse)
+
+
 @pytest.fixture(scope="session")
 def egg(samples: Path, tmp_path_factory: pytest.TempPathFactory) -> Made:
     """Design for a picture with all files, without finite elements."""
     folder = tmp_path_factory.mktemp("egg") / "egg_design"
-    result = unverified(samples / "egg.png", "--json", "--quiet", "--out", folder)
+    result = unverified(
+        samples / "egg.png", "--method", "paper", "--json", "--quiet", "--out", folder
+    )
     assert result.exit_code == 0, result.stderr
     return Made(folder, result)

@@ -33,6 +33,7 @@ def test_the_main_job(samples: Path, tmp_path: Path) -> None:
     assert result.stdout.splitlines()[1].split()[:3] == ["joint", "F", "mm"]
 
 
+@pytest.mark.usefixtures("coarse_mesh")
 def test_a_short_tube_is_verified(tmp_path: Path) -> None:
     result = call("design", arc(tmp_path), "--method", "paper")
     assert result.exit_code == 0, result.stderr
@@ -82,14 +83,25 @@ def check_series(folder: Path) -> None:
     assert (folder / "actuator.vtu").read_bytes() == last
 
 
-def test_same_input_same_bytes(egg: Made, samples: Path, tmp_path: Path) -> None:
-    assert unverified(samples / "egg.png").exit_code == 0
-    again = tmp_path / "egg_design"
-    files = sorted(path.name for path in egg.folder.iterdir())
+def check_same(one: Path, other: Path) -> None:
+    files = sorted(path.name for path in one.iterdir())
     assert {"report.html", "template.pdf", "mounting.dxf", "overlay.png"} <= set(files)
-    assert files == sorted(path.name for path in again.iterdir())
+    assert files == sorted(path.name for path in other.iterdir())
     for file in files:
-        assert (egg.folder / file).read_bytes() == (again / file).read_bytes(), file
+        assert (one / file).read_bytes() == (other / file).read_bytes(), file
+
+
+def test_same_input_same_bytes(egg: Made, samples: Path, tmp_path: Path) -> None:
+    assert unverified(samples / "egg.png", "--method", "paper").exit_code == 0
+    check_same(egg.folder, tmp_path / "egg_design")
+
+
+@pytest.mark.slow
+def test_same_input_same_bytes_by_the_optimal_method(samples: Path, tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        assert unverified(samples / "egg.png", "--out", name).exit_code == 0
+    check_same(tmp_path / "a", tmp_path / "b")
+    assert (tmp_path / "a" / "trade_off.csv").exists()
 
 
 def test_json_on_stdout_is_the_file(egg: Made) -> None:

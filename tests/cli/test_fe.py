@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Iterator
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 import pytest
@@ -23,14 +21,7 @@ FE_KEYS = [
 ]  # fmt: skip
 
 
-@pytest.fixture(scope="module", autouse=True)
-def coarse_mesh() -> Iterator[None]:
-    """Solve on a coarse mesh: the commands are tested here, not the engine's error."""
-    with pytest.MonkeyPatch.context() as patch:
-        coarse = partial(fem.solve, size=fem.MeshSize(beside=0.0, edge=0.4))
-        patch.setattr("profiletool.verify.run.solve", coarse)
-        yield
-
+pytestmark = pytest.mark.usefixtures("coarse_mesh")
 
 JOINT = ("joint", "--openF", "10", "--alpha", "84", "--pressure", "0.2")
 

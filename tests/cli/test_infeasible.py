@@ -48,7 +48,7 @@ def test_exit_6_for_a_shape_that_is_not_good_enough(tmp_path: Path) -> None:
     assert "INFEASIBLE" in (tmp_path / "corner_design" / "template.svg").read_text()
 
 
-@pytest.mark.usefixtures("few_files")
+@pytest.mark.usefixtures("few_files", "coarse_mesh")
 @pytest.mark.parametrize(
     ("failing", "says"),
     [(ending_early, "limit point"), (never_converging, "no equilibrium found")],
@@ -99,7 +99,7 @@ def test_exit_7_where_no_choice_of_joints_stands(
 
 
 @pytest.mark.usefixtures("few_files")
-@pytest.mark.parametrize("method", ["paper", "optimal"])
+@pytest.mark.parametrize("method", ["paper", pytest.param("optimal", marks=pytest.mark.slow)])
 def test_exit_6_wins_over_exit_7(
     method: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

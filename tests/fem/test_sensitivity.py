@@ -53,7 +53,7 @@ def lengthened(actuator: Actuator, segment: int, by: float) -> Actuator:
         ((270.0, 90.0), "mooney-rivlin"),
         ((250.0, 30.0), "mooney-rivlin"),
         pytest.param((270.0, 90.0), "yeoh", marks=pytest.mark.slow),
-        ((270.0, 90.0), "ogden"),
+        pytest.param((270.0, 90.0), "ogden", marks=pytest.mark.slow),
     ],
 )
 def test_against_differences(center: tuple[float, float], rubber: str) -> None:

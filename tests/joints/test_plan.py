@@ -157,6 +157,7 @@ class Bursting(BendingForwardModel):
         return super().bend(posed, sign, near)
 
 
+@pytest.mark.slow
 def test_a_choice_that_does_not_stand_is_made_again_with_less_pressure(request_: Request) -> None:
     said: list[str] = []
     profile = find_subject(request_, silent).profile

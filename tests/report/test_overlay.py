@@ -102,6 +102,7 @@ def test_bulb_by_the_joint_response(bulb: Scene) -> None:
     check("overlay_bulb_response.webp", draw_overlay(by_response(bulb)))
 
 
+@pytest.mark.slow
 def test_an_optimal_design_is_drawn_as_the_response_bends_it(samples: Path) -> None:
     request = Request(samples / "finger_rest.csv", verify=False)
     result = run(request, lambda line: None)

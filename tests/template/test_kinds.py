@@ -17,7 +17,7 @@ from profiletool.template.layout import build_sheet
 from profiletool.template.unroll import slits
 from tests.template.designs import bulb, design_of, joint, long_tube, short_tube, skew, tight
 
-DESIGNS = [bulb, short_tube, long_tube, skew, tight]
+DESIGNS = [bulb, short_tube, skew, tight, pytest.param(long_tube, marks=pytest.mark.slow)]
 AXIS = np.array([1.0, 0.0, 0.0])  # along the tube, to its closed end
 
 

@@ -164,7 +164,7 @@ def test_a_root_without_room_is_refused():
         mounting_drawing(replace(design, tube=tube), *rest)
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=5, deadline=None)
 @given(
     side=st.sampled_from(["left", "right"]),
     start=st.floats(0, 40),

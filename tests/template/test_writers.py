@@ -21,7 +21,7 @@ from tests.template.designs import bulb, long_tube, short_tube, skew
 GOLDEN = Path(__file__).resolve().parents[1] / "golden"
 COLOURS = {"CUT_OUTER": 7, "CUT_INNER": 5, "MARK": 3, "NOTE": 1, "REF": 8}
 SVG = "{http://www.w3.org/2000/svg}"
-DESIGNS = [bulb, short_tube, long_tube, skew]
+DESIGNS = [bulb, short_tube, skew, pytest.param(long_tube, marks=pytest.mark.slow)]
 
 
 def read_back(data: bytes):

@@ -170,6 +170,7 @@ def test_a_plain_picture_is_looked_at_once() -> None:
     assert [found.method for found in find_candidates(view)] == ["plain ground"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["pear_in_hand.jpg", "avocado_in_shop.jpg"])
 def test_a_pile_is_refused(shared: Path, name: str) -> None:
     with pytest.raises(Unsure):

@@ -102,7 +102,7 @@ def test_print_that_is_too_large_is_within_the_bar() -> None:
     ("shot", "focal_error", "sure"),
     [
         (SMALL, 0.0, 0.05),
-        (replace(SMALL, tilt=0.0), 0.04, 0.05),
+        pytest.param(replace(SMALL, tilt=0.0), 0.04, 0.05, marks=pytest.mark.slow),
         (replace(SMALL, tilt=25.0), None, 0.02),
         (replace(SMALL, tilt=0.0), None, 0.5),
     ],

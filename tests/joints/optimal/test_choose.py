@@ -115,6 +115,7 @@ def test_a_wished_number_of_joints_is_honoured(count: int) -> None:
     assert choice.trade_off.polished_mm[count - 1] == pytest.approx(choice.misfit.rms_mm)
 
 
+@pytest.mark.slow
 def test_fewer_joints_do_for_a_looser_tolerance() -> None:
     tight, loose = (choose(BOWL, MODEL, SPEC, ChoiceOptions(tolerance_mm=t)) for t in (0.05, 2.0))
     assert len(loose.chain.openF) < len(tight.chain.openF)
@@ -128,6 +129,7 @@ def test_less_pressure_takes_no_more_than_is_allowed() -> None:
     assert choice.trade_off.pressure[-1] == pytest.approx(0.12)
 
 
+@pytest.mark.slow
 def test_a_free_base_is_no_worse() -> None:
     hollow = bent_line((12.0, -14.0), (50.0, 80.0), (25.0, 0.0))
     fixed, free = (
@@ -182,6 +184,7 @@ def test_a_curve_too_tight_is_named_with_its_place() -> None:
     assert "2.00 bar" in stretch.reason
 
 
+@pytest.mark.slow
 def test_a_hollow_tighter_than_the_tube_bends_is_named() -> None:
     least = tightest_radius(MODEL, SPEC, 0.2, -1.0)
     assert least > 25.0 > tightest_radius(MODEL, SPEC, 0.2, 1.0)
