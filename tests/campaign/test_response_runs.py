@@ -146,6 +146,7 @@ def test_runs_are_kept_and_those_without_a_state_left_out(tmp_path, monkeypatch,
     assert all(map(same, found, again))
 
 
+@pytest.mark.slow
 def test_real_lines_are_the_same_bit_for_bit_on_processes(tmp_path):
     tasks = [replace(task, pressures_bar=(0.2,)) for task in singles()[:2]]
     found = run_group(tasks, Store(tmp_path, RESPONSE_RUN), 2)

@@ -12,6 +12,7 @@ from tests.calls import call, error_of
 from tests.cli.inputs import REST, arc, ending_early, never_converging, unverified
 
 
+@pytest.mark.usefixtures("few_files")
 def test_exit_6_writes_the_best_attempt(tmp_path: Path) -> None:
     (tmp_path / "corner.csv").write_text("0,80\n0,0\n80,0\n")
     result = unverified("corner.csv", "--method", "paper")

@@ -13,7 +13,10 @@ import pytest
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "examples"
 GUIDE = ROOT / "docs" / "examples.md"
-SLOW = {"change_a_joint.py", "own_rubber.py"}  # finite elements of more than some seconds
+# Whole designs one after the other, or finite elements of more than some seconds.
+SLOW = {
+    "change_a_joint.py", "own_points.py", "own_rubber.py", "picture_to_files.py", "step_by_step.py",
+}  # fmt: skip
 SCRIPTS = [
     pytest.param(file, id=file.stem, marks=pytest.mark.slow if file.name in SLOW else ())
     for file in sorted(EXAMPLES.glob("*.py"))

@@ -31,7 +31,7 @@ EGG = np.column_stack([30.0 * np.cos(T) * (1.0 - 0.15 * np.sin(T)), 42.0 * np.si
 
 @pytest.fixture(scope="module")
 def made(samples: Path) -> Result:
-    return design(samples / "egg.png", verify=False)
+    return design(Request(samples / "egg.png", verify=False))
 
 
 def test_a_file_by_its_name_gives_what_the_command_gives(made: Result, samples: Path) -> None:
@@ -39,10 +39,8 @@ def test_a_file_by_its_name_gives_what_the_command_gives(made: Result, samples: 
     assert made.design.source.file == "egg.png"
     again = design(str(samples / "egg.png"), verify=False, side="left", joints=None)
     assert again.design == made.design
-    request = Request(samples / "egg.png", verify=False)
-    assert design(request).design == made.design
     with pytest.raises(UsageError, match="a request holds all options"):
-        design(request, side="right")
+        design(Request(samples / "egg.png", verify=False), side="right")
 
 
 def test_a_picture_as_an_array_is_the_same_picture(made: Result, samples: Path) -> None:
@@ -104,7 +102,7 @@ def test_the_steps_one_by_one(made: Result, samples: Path) -> None:
     assert other.design.source.side == "left"
     assert plan_joints(profile, method="paper").by == "formula"
     mirrored = find_subject(samples / "egg.png", side="right").profile
-    assert design(mirrored, verify=False).design.source.side == "right"
+    assert design(mirrored, verify=False, method="paper").design.source.side == "right"
 
 
 def test_files_as_bytes(made: Result, tmp_path: Path) -> None:

@@ -107,6 +107,7 @@ def test_no_state_there_is_said_so(known: Solution) -> None:
     assert (str(copy), copy.history) == (str(error), error.history)
 
 
+@pytest.mark.slow
 def test_the_last_state_on_the_way_is_carried(known: Solution) -> None:
     # A cut of 53 mm balloons at this pressure, one of half of that does not.
     first, *others = ACTUATOR.windows

@@ -138,10 +138,10 @@ def test_what_the_sheet_tells_is_not_given_another_way(lying_file: Path) -> None
         look_at(lying_file, ScaleRequest(marker_mm=30.0))
 
 
-def test_a_marker_in_the_field_sets_the_sheets_size_right(lying: Picture, tmp_path: Path) -> None:
+def test_a_marker_in_the_field_sets_the_sheets_size_right(
+    lying: Picture, sheet: Rectified, tmp_path: Path
+) -> None:
     """Said to be 33 mm, it makes all else a tenth larger."""
-    sheet = rectify(photograph(BOARDS[0], None, SHOT, np.random.default_rng(3)))
-    assert sheet is not None
     assert sheet.picture.mm_per_px is not None
     cells = cv2.aruco.generateImageMarker(
         cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50), 5, 120

@@ -1,9 +1,21 @@
-"""Lines that lie on each other, and angles on a circle."""
+"""Lines as they are read back, lines that lie on each other, and angles on a circle."""
 
 from __future__ import annotations
 
+import io
+
+import ezdxf
 import numpy as np
 from shapely import STRtree, linestrings
+
+
+def read_back(data: bytes):
+    """A DXF file as a program reads it that mends nothing: ezdxf.recover would."""
+    doc = ezdxf.read(io.StringIO(data.decode("ascii")))
+    auditor = doc.audit()
+    assert not auditor.has_errors
+    assert not auditor.has_fixes
+    return doc
 
 
 def segments(sheet):

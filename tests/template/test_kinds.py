@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import io
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from ezdxf import recover
 from shapely import LineString, Polygon
 
 from profiletool.errors import UsageError
@@ -16,6 +14,7 @@ from profiletool.template.kinds import KINDS, Wish
 from profiletool.template.layout import build_sheet
 from profiletool.template.unroll import slits
 from tests.template.designs import bulb, design_of, joint, long_tube, short_tube, skew, tight
+from tests.template.geometry import read_back
 
 DESIGNS = [bulb, short_tube, skew, tight, pytest.param(long_tube, marks=pytest.mark.slow)]
 AXIS = np.array([1.0, 0.0, 0.0])  # along the tube, to its closed end
@@ -62,7 +61,7 @@ def wrapped_around(design, y, radius):
 
 
 def cut_lines(design, wish):
-    doc, _ = recover.read(io.BytesIO(write_dxf(build_sheet(design, wish).drawing)))
+    doc = read_back(write_dxf(build_sheet(design, wish).drawing))
     lines = doc.modelspace().query('LWPOLYLINE[layer=="CUT_INNER"]')
     return [np.array([p[:2] for p in line.get_points()]) for line in lines]
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import os
 from collections import Counter
 from pathlib import Path
@@ -11,24 +10,17 @@ from xml.etree import ElementTree
 import ezdxf
 import numpy as np
 import pytest
-from ezdxf import recover
 
 from profiletool.template.dxf import write_dxf
 from profiletool.template.layout import build_sheet
 from profiletool.template.svg import write_svg
 from tests.template.designs import bulb, long_tube, short_tube, skew
+from tests.template.geometry import read_back
 
 GOLDEN = Path(__file__).resolve().parents[1] / "golden"
 COLOURS = {"CUT_OUTER": 7, "CUT_INNER": 5, "MARK": 3, "NOTE": 1, "REF": 8}
 SVG = "{http://www.w3.org/2000/svg}"
 DESIGNS = [bulb, short_tube, skew, pytest.param(long_tube, marks=pytest.mark.slow)]
-
-
-def read_back(data: bytes):
-    doc, auditor = recover.read(io.BytesIO(data))
-    assert not auditor.has_errors
-    assert not auditor.has_fixes
-    return doc
 
 
 @pytest.mark.parametrize("build", DESIGNS)

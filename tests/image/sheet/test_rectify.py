@@ -46,7 +46,13 @@ def seen(shot: Shot = SMALL, change: Callable[[np.ndarray], None] | None = None)
 # --- sizes ---------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("name", "kind"), list(zip(QUICK, BODIES, strict=True)))
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        pytest.param(name, kind, marks=() if "slanted" in name else pytest.mark.slow)
+        for name, kind in zip(QUICK, BODIES, strict=True)
+    ],
+)
 def test_sizes_from_three_poses(name: str, kind: str) -> None:
     tried = trial(BODIES[kind], replace(POSES[name], size=(720, 960)), rng())
     assert abs(tried.worst) < 0.01
