@@ -20,6 +20,7 @@ from hypothesis import settings
 settings.register_profile("profiletool", deadline=None, derandomize=True, max_examples=50)
 settings.load_profile("profiletool")
 
+
 def pytest_collection_finish() -> None:
     """Leave what all tests share out of every garbage collection: a fiftieth of all time."""
     gc.collect()
