@@ -15,7 +15,8 @@ EXAMPLES = ROOT / "examples"
 GUIDE = ROOT / "docs" / "examples.md"
 # Whole designs one after the other, or finite elements of more than some seconds.
 SLOW = {
-    "change_a_joint.py", "own_points.py", "own_rubber.py", "picture_to_files.py", "step_by_step.py",
+    "change_a_joint.py", "figure.py", "own_points.py", "own_rubber.py", "picture_to_files.py",
+    "step_by_step.py",
 }  # fmt: skip
 SCRIPTS = [
     pytest.param(file, id=file.stem, marks=pytest.mark.slow if file.name in SLOW else ())

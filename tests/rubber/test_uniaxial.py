@@ -85,6 +85,7 @@ def test_the_fit_recovers_the_law_of_exact_data(
     assert fit.stretch_range == (lam.min(), lam.max())
 
 
+@pytest.mark.slow
 def test_the_fit_to_noisy_data_is_within_its_error_bars() -> None:
     law, sigma, step = PAPER_RUBBER, 0.01, 1e-6
     lam = noisy(0, law, 0.0)[0]
