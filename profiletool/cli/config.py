@@ -45,6 +45,8 @@ def _read_config(context: typer.Context, path: Path) -> dict[str, Any]:
         parameter = names.get(key.replace("_", "-"))
         if isinstance(value, list) and "," in str(getattr(parameter, "metavar", "")):
             value = ",".join(str(part) for part in value)
+        if isinstance(value, dict) and "=" in str(getattr(parameter, "metavar", "")):
+            value = ",".join(f"{name}={bound}" for name, bound in value.items())
         if parameter is None or isinstance(value, dict | list):
             raise UsageError(f'{path}: "{key}" is no option of design; see design --help')
         if isinstance(value, bool) != bool(getattr(parameter, "is_flag", False)):

@@ -11,7 +11,8 @@ from typing import Annotated
 
 import typer
 
-from profiletool.errors import ProfiletoolError
+from profiletool.errors import ProfiletoolError, UsageError
+from profiletool.records.built import BuildErrors, build_errors
 from profiletool.records.options import in_flags
 
 Debug = Annotated[bool, typer.Option("--debug", help="Show the full traceback of an error.")]
@@ -137,6 +138,14 @@ def ascending(text: str) -> Numbers:
     if values[0] <= 0.0:
         raise typer.BadParameter(f"expected numbers above 0, not {values[0]:g}")
     return values
+
+
+def build(text: str) -> BuildErrors:
+    """Read the errors of a build; as `numbers`."""
+    try:
+        return build_errors(text)
+    except UsageError as error:
+        raise typer.BadParameter(str(error).replace("`build`", "--build")) from error
 
 
 def turn(text: str) -> float | str:

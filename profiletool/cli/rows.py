@@ -9,7 +9,8 @@ from typing import Annotated, Any, Literal, get_type_hints
 
 import typer
 
-from profiletool.cli.console import Numbers, four, turn, two
+from profiletool.cli.console import Numbers, build, four, turn, two
+from profiletool.records.built import BuildErrors
 from profiletool.records.options import Option
 from profiletool.records.request import Request
 
@@ -50,6 +51,8 @@ def _default(row: Option, usual: Request) -> Any:
     value = row.value(usual)
     if "default:" in row.help:
         return None
+    if row.kind.type is BuildErrors:
+        return str(value)
     return f"{value:g}" if row.kind.count == 1 else value
 
 
@@ -60,6 +63,8 @@ def _annotation(row: Option) -> Any:
     if kind.count:
         parse = {1: turn, 2: two, 4: four}[kind.count]
         return Annotated[Numbers | None, typer.Option(row.flag, parser=parse, **words)]
+    if kind.type is BuildErrors:
+        return Annotated[BuildErrors, typer.Option(row.flag, parser=build, **words)]
     if kind.type is bool:
         flags = f"{row.flag}/--no-{row.flag[2:]}" if row.off else row.flag
         return Annotated[bool, typer.Option(flags, **words)]

@@ -13,7 +13,8 @@ from profiletool.files.read import read_file
 from profiletool.records.design import Design
 from profiletool.records.rubber import law_of
 
-SCHEMA = "profiletool.design/1"
+SCHEMA = "profiletool.design/2"
+_READ = (SCHEMA, "profiletool.design/1")  # the first has no `built` and no `trim`
 _DECIMALS = 6  # a nanometre; keeps the last bits of the arithmetic out of the file
 _MOST_BYTES = 5_000_000
 
@@ -38,7 +39,7 @@ def from_json(text: str | bytes, file: str) -> Design:
         tree = json.loads(text, parse_constant=_refuse_constant)
     except (ValueError, RecursionError) as error:
         raise UnreadableInput(f"{file} is not JSON: {error}") from error
-    if not isinstance(tree, dict) or tree.get("schema") != SCHEMA:
+    if not isinstance(tree, dict) or tree.get("schema") not in _READ:
         raise UnreadableInput(f'{file} is no design: its "schema" is not "{SCHEMA}"')
     try:
         design = TypeAdapter(Design).validate_python(_with_law(tree, file))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from formula.rubber import RubberLaw
 from profiletool.errors import UnreadableInput
+from profiletool.records.built import Built, TrimPoint
 from profiletool.records.frames import Pose
 from profiletool.records.side import Side
 
@@ -199,6 +200,13 @@ class Design:
     method : {"optimal", "paper"}
     sensitivity : tuple of Sensitivity
         Empty where finite elements did not verify it.
+    built : Built or None
+        The misfit to expect of the actuator that is built; None where finite elements did not
+        verify it.
+    operate_bar : float or None
+        The pressure to work at against the object; None where it is not computed.
+    trim : tuple of TrimPoint
+        Where the finished actuator stands at pressures about the planned one.
     """
 
     source: Source
@@ -214,3 +222,6 @@ class Design:
     warnings: tuple[str, ...]
     method: str = "paper"
     sensitivity: tuple[Sensitivity, ...] = ()
+    built: Built | None = None
+    operate_bar: float | None = None
+    trim: tuple[TrimPoint, ...] = ()

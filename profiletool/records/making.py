@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from profiletool.errors import UsageError
+from profiletool.records.built import build_errors
 from profiletool.records.options import DESIGN, Option
 from profiletool.records.request import Look, Request, ScaleRequest, TubeSpec
 
@@ -40,7 +41,7 @@ def request_of(file: Path, values: Mapping[str, Any], formula: Formula | None = 
     if formula is not None:
         tube = TubeSpec(formula.outer_diameter_mm, formula.wall_mm, rubber=formula.rubber)
     parts: dict[str, Any] = {"scale": ScaleRequest(), "look": Look(), "tube": tube}
-    own = {}
+    own: dict[str, Any] = {}
     for name, value in values.items():
         holder, _, field = paths[name].rpartition(".")
         if value is None:
@@ -48,7 +49,7 @@ def request_of(file: Path, values: Mapping[str, Any], formula: Formula | None = 
         if holder:
             parts[holder] = replace(parts[holder], **{field: value})
         else:
-            own[field] = value
+            own[field] = build_errors(value) if field == "build" else value
     return Request(file, **parts, **own)
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePath
 from typing import Any
 
+from profiletool.records.built import BuildErrors
 from profiletool.records.request import Request
 
 
@@ -54,6 +55,7 @@ _RATIO, _COUNT = _number(""), ValueKind(int, str)
 _YES = ValueKind(bool, lambda value: "yes" if value else "no")
 _FILE = ValueKind(Path, lambda value: PurePath(value).name)
 _TURN = ValueKind(str, lambda value: value if value == "auto" else f"{value:g}°", count=1)
+_BUILD = ValueKind(BuildErrors, str)
 _ROOT = ValueKind(float, lambda value: f"at least {value:g} mm")
 
 
@@ -196,6 +198,16 @@ DESIGN = (
     Option(
         "--place-step", "place_step_mm", _MM, "Step of the joints' places, mm (0: any; optimal).",
         least=0.0,
+    ),
+    Option(
+        "--objective", "objective", _choice("built", "nominal"),
+        "Choose joints for the actuator that is built, or for perfect parts (optimal).", main=True,
+    ),
+    Option(
+        "--build", "build", _BUILD,
+        "Errors of the build, uniform within +-: bar, threads, % of the rubber's stiffness, "
+        "% of the wall, mm of a cut, mm of a place; 0 leaves one out.",
+        metavar="NAME=BOUND,...", main=True,
     ),
     Option(
         "--verify", "verify", _YES, "Run finite elements of the whole actuator: some seconds.",

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from profiletool.records.built import BuildErrors
 from profiletool.records.side import Side
 
 if TYPE_CHECKING:
@@ -105,6 +106,7 @@ class Look:
 
 
 Method = Literal["optimal", "paper"]
+Aim = Literal["built", "nominal"]
 
 
 @dataclass(frozen=True)
@@ -141,6 +143,9 @@ class Request:
         A formula file, or the name of one that comes along; None for the paper's.
     extrapolate : bool
         Whether the formula may be used beyond what it was fitted on.
+    objective : {"built", "nominal"}
+        What joints are chosen for: the actuator that is built, errors and all, or perfect parts.
+    build : BuildErrors
     verify, refine : bool
         Whether finite elements verify the design, and correct it before.
     given : Picture, DrawnLine, Profile or None
@@ -164,6 +169,8 @@ class Request:
     tube: TubeSpec = field(default_factory=TubeSpec)
     formula: Path | None = None
     extrapolate: bool = False
+    objective: Aim = "built"
+    build: BuildErrors = field(default_factory=BuildErrors)
     verify: bool = True
     refine: bool = True
     given: Picture | DrawnLine | Profile | None = None
