@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from fem.actuator import Actuator, Window
 
-ANGLE_STEP, LENGTH_STEP = 1e-5, 1e-4  # of the differences: rad, mm
+ANGLE_STEP, LENGTH_STEP, SHARE_STEP = 1e-5, 1e-4, 1e-4  # of the differences: rad, mm, 1
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Parameter:
     segment : int or None
         The stretch of the tube that it changes; None for the whole tube.
     step : float
-        For differences, mm or rad.
+        For differences, mm, rad or a share of itself.
     change : callable
         Changes an actuator by an amount.
     """
@@ -32,8 +32,8 @@ class Parameter:
 def families(count: int, *, apart: bool = False) -> tuple[tuple[Parameter, ...], ...]:
     """Families of parameters that can be changed at once: no two have a ring in common.
 
-    In order: each window's alpha, all windows' lengths, all wrapped sectors' lengths, the wall;
-    for ``count`` windows; each parameter by itself where they are to be kept ``apart``.
+    In order: each window's alpha, all windows' lengths, all wrapped sectors' lengths, the wall,
+    the gauze; for ``count`` windows; each parameter by itself where they are to be kept ``apart``.
     """
     windows, wrapped = range(1, 2 * count, 2), range(0, 2 * count + 1, 2)
     together: tuple[tuple[Parameter, ...], ...] = (
@@ -42,12 +42,18 @@ def families(count: int, *, apart: bool = False) -> tuple[tuple[Parameter, ...],
         tuple(Parameter(k, LENGTH_STEP, _stretch(k)) for k in windows),
         tuple(Parameter(k, LENGTH_STEP, _stretch(k)) for k in wrapped),
         (Parameter(None, LENGTH_STEP, _thicken),),
+        (Parameter(None, SHARE_STEP, _stiffen),),
     )
     return tuple((p,) for family in together for p in family) if apart else together
 
 
 def _thicken(actuator: Actuator, amount: float) -> Actuator:
     return replace(actuator, wall=actuator.wall + amount)
+
+
+def _stiffen(actuator: Actuator, share: float) -> Actuator:
+    gauze = replace(actuator.gauze, stiffness=(1.0 + share) * actuator.gauze.stiffness)
+    return replace(actuator, gauze=gauze)
 
 
 def _alpha(number: int) -> Callable[[Actuator, float], Actuator]:

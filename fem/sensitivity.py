@@ -47,6 +47,15 @@ class Rate:
     volume: float
     moved: FloatArray
 
+    def __neg__(self) -> Rate:
+        """By the parameter with its sign changed."""
+        return Rate(*(-value for value in vars(self).values()))
+
+    def plus(self, other: Rate, factor: float) -> Rate:
+        """By this parameter and a multiple of another one together."""
+        pairs = zip(vars(self).values(), vars(other).values(), strict=True)
+        return Rate(*(one + factor * more for one, more in pairs))
+
 
 @dataclass(frozen=True)
 class Sensitivities:
@@ -63,6 +72,8 @@ class Sensitivities:
         By the length of each wrapped sector, the cuts' lengths kept; the first is the root's.
     wall : Rate, per mm
         By the wall's thickness, the outer diameter kept.
+    gauze : Rate, per share of itself
+        By the threads' stiffness.
     """
 
     pressure: Rate
@@ -70,6 +81,15 @@ class Sensitivities:
     openF: tuple[Rate, ...]
     wrapped: tuple[Rate, ...]
     wall: Rate
+    gauze: Rate
+
+    def rubber(self, pressure: float) -> Rate:
+        """Derivatives by the rubber's stiffness, per share of itself, at a pressure in MPa.
+
+        By dimensional analysis: rubber, gauze and pressure in proportion give the same shape.
+        Where gravity or the like acts as well, its share is left out.
+        """
+        return (-self.gauze).plus(self.pressure, -pressure)
 
 
 def flow_to(rates: Sensitivities, known: Actuator, new: Actuator, rise: float) -> FloatArray:
@@ -99,13 +119,14 @@ def flow_to(rates: Sensitivities, known: Actuator, new: Actuator, rise: float) -
 
 
 def _by_parameter(rates: Sequence[Rate], count: int) -> Sensitivities:
-    """Sort rates: by the pressure, ``count`` sectors and cuts, the wrapped lengths, the wall."""
+    """Sort rates: by pressure, ``count`` sectors and cuts, wrapped lengths, wall, gauze."""
     return Sensitivities(
         pressure=rates[0],
         alpha=tuple(rates[1 : count + 1]),
         openF=tuple(rates[count + 1 : 2 * count + 1]),
-        wrapped=tuple(rates[2 * count + 1 : -1]),
-        wall=rates[-1],
+        wrapped=tuple(rates[2 * count + 1 : -2]),
+        wall=rates[-2],
+        gauze=rates[-1],
     )
 
 
@@ -136,7 +157,8 @@ def sensitivities(
     Returns
     -------
     Sensitivities
-        By the pressure, each uncut sector, each cut's length, each wrapped length and the wall.
+        By the pressure, each uncut sector, each cut's length, each wrapped length, the wall
+        and the gauze.
 
     Raises
     ------

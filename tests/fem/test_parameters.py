@@ -24,7 +24,7 @@ def lengths(actuator: Actuator) -> np.ndarray:
 
 def test_each_parameter_changes_one_number() -> None:
     alone = [p for (p,) in families(2, apart=True)]
-    assert [p.segment for p in alone] == [None, None, 1, 3, 0, 2, 4, None]
+    assert [p.segment for p in alone] == [None, None, 1, 3, 0, 2, 4, None, None]
     before = lengths(TUBE)
     for number in (0, 1):
         changed = alone[number].change(TUBE, 0.3)
@@ -37,12 +37,15 @@ def test_each_parameter_changes_one_number() -> None:
         expected[parameter.segment] += 0.3
         np.testing.assert_allclose(lengths(changed), expected, atol=1e-12)
         assert [w.alpha for w in changed.windows] == [w.alpha for w in TUBE.windows]
-    assert alone[-1].change(TUBE, 0.3) == replace(TUBE, wall=TUBE.wall + 0.3)
+    assert alone[-2].change(TUBE, 0.3) == replace(TUBE, wall=TUBE.wall + 0.3)
+    stiffer = alone[-1].change(TUBE, 0.3)
+    assert stiffer.gauze.stiffness == pytest.approx(1.3 * TUBE.gauze.stiffness)
+    assert replace(stiffer, gauze=TUBE.gauze) == TUBE
 
 
 def test_those_of_a_family_have_no_ring_in_common() -> None:
     together = families(3)
-    assert [len(family) for family in together] == [1, 1, 1, 3, 4, 1]
+    assert [len(family) for family in together] == [1, 1, 1, 3, 4, 1, 1]
     for family in together:
         segments = sorted(p.segment for p in family if p.segment is not None)
         assert all(b - a >= 2 for a, b in pairwise(segments))

@@ -10,6 +10,7 @@ import pytest
 
 from fem.actuator import Actuator, Window, chain
 from fem.errors import FemError
+from fem.material import MooneyRivlin
 from fem.meshsize import MeshSize
 from fem.near import solve_near
 from fem.sensitivity import Rate, Sensitivities, sensitivities
@@ -90,6 +91,28 @@ def test_against_differences(center: tuple[float, float], rubber: str) -> None:
 
     check(found.wall, walled(1e-3), walled(-1e-3), 1e-3)
     assert found.wall.theta[0] < 0.0  # a thicker wall, less angle
+
+    def stiffened(by: float) -> State:
+        gauze = replace(actuator.gauze, stiffness=(1.0 + by) * actuator.gauze.stiffness)
+        return solve(replace(actuator, gauze=gauze), [PRESSURE], SIZE).states[-1]
+
+    check(found.gauze, stiffened(0.01), stiffened(-0.01), 0.01)
+
+
+def test_stiffer_rubber_is_less_pressure_and_a_softer_gauze() -> None:
+    actuator = two((270.0, 90.0))
+    run = solve(actuator, [PRESSURE], SIZE)
+    rate = sensitivities(run.mesh, run.states[-1].x, PRESSURE).rubber(PRESSURE)
+
+    def with_rubber(by: float) -> State:
+        law = actuator.rubber
+        scaled = MooneyRivlin(*((1.0 + by) * c for c in (law.C10, law.C01, law.K)))
+        return solve(replace(actuator, rubber=scaled), [PRESSURE], SIZE).states[-1]
+
+    after, before = with_rubber(0.01), with_rubber(-0.01)
+    theta = (after.theta - before.theta) / 0.02
+    np.testing.assert_allclose(rate.theta, theta, rtol=2e-3)
+    assert rate.theta[0] < 0.0
 
 
 def test_signs() -> None:
