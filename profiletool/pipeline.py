@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 from formula.theta import Formula
 from profiletool.files.formula import read_formula
+from profiletool.joints.closest import target_points
 from profiletool.joints.optimal_method import optimal_plan
 from profiletool.joints.paper_method import paper_plan
 from profiletool.records.design import Design
@@ -20,7 +21,9 @@ from profiletool.verdict.missed import Missed
 from profiletool.verdict.notes import notes_of
 from profiletool.verdict.reasons import misses_of, reasons_of
 from profiletool.verdict.summary import headline, summary
+from profiletool.verify.built import built_of
 from profiletool.verify.check import Check, check
+from profiletool.verify.fields import fields_of
 from profiletool.verify.forward import FeForwardModel
 from profiletool.verify.run import Progress
 from profiletool.verify.sensitivity import sensitivity_of
@@ -95,7 +98,7 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
         say(f"once more below {lower.tube.max_pressure_bar:.2f} bar, where FE is stable")
         second = _attempt(lower, subject, formula, say, progress)
         attempt = second if second.design.verified else attempt
-    return _judged(replace(attempt, request=request))
+    return _judged(_with_errors(replace(attempt, request=request)))
 
 
 def _attempt(
@@ -140,14 +143,24 @@ def _verified(
     return check(design, profile.points, share)
 
 
+def _with_errors(attempt: Draft) -> Draft:
+    """Add what errors of the build do to a verified design."""
+    checked, design = attempt.check, attempt.design
+    if checked is None or checked.run is None or checked.shape is None:
+        return attempt
+    points = target_points(attempt.profile)
+    fields = fields_of(design, checked.run, points)
+    if fields is None:
+        return attempt
+    sensitivity = sensitivity_of(design, fields, points)
+    built = built_of(design, fields, attempt.request.build)
+    return replace(attempt, design=replace(design, sensitivity=sensitivity, built=built))
+
+
 def _judged(attempt: Draft) -> Result:
-    """Add the verdict: reasons against the design, notes for its user, sensitivities."""
+    """Add the verdict: reasons against the design, notes for its user."""
     misses = misses_of(attempt)
     reasons = reasons_of(attempt, misses)
     notes = notes_of(attempt, reasons, misses)
     design = replace(attempt.design, feasible=not reasons, warnings=notes)
-    checked = attempt.check
-    if checked is not None and checked.run is not None and checked.shape is not None:
-        sensitivity = sensitivity_of(design, checked.run, attempt.profile)
-        design = replace(design, sensitivity=sensitivity)
     return Result(**vars(replace(attempt, design=design)), reasons=reasons, misses=misses)
