@@ -22,6 +22,7 @@ from profiletool.joints.correction.correct import (
     correct,
 )
 from profiletool.joints.correction.parameters import PosedChain, parameters_of
+from profiletool.joints.expected import Aim, ErrorSizes, Expected, error_sizes
 from profiletool.joints.layout import Layout
 from profiletool.joints.optimal.choose import TOLERANCE_MM, Choice, ChoiceOptions, choose
 from profiletool.joints.plan import Plan
@@ -151,11 +152,23 @@ def _chosen(request: Request, profile: Profile, model: Model, spec: TubeSpec) ->
         interference_mm=request.interference_mm,
         count=request.joints,
         base_free=request.base_free,
+        sizes=_sizes(request),
     )
     try:
         return choose(profile, model, spec, options)
     except OutOfRange as error:
         raise UsageError(f"{error}; change `pitch_mm`, `max_pressure_bar` or `formula`") from error
+
+
+def _sizes(request: Request) -> ErrorSizes | None:
+    """Errors that count in the choice; none where perfect parts are asked for."""
+    return None if request.objective == "nominal" else error_sizes(request.build, request.tube)
+
+
+def _aim(request: Request, model: Model) -> Aim:
+    sizes = _sizes(request)
+    expected = None if sizes is None else Expected(model, sizes)
+    return Aim(request.interference_mm, expected)
 
 
 def _step_sizes(request: Request) -> StepSizes:
@@ -187,7 +200,7 @@ def _corrected(
         vector,
         profile,
         _step_sizes(request),
-        request.interference_mm,
+        _aim(request, model),
         say,
     )
     return corrected.best.posed

@@ -15,6 +15,7 @@ from profiletool.joints import misfit
 from profiletool.joints.bounds import cuts_of, limits_of
 from profiletool.joints.correction.parameters import PosedChain, parameters_of
 from profiletool.joints.correction.steps import Linear, free_step
+from profiletool.joints.expected import Aim
 from profiletool.joints.misfit import Deviation, Objective, Term, is_good, objective_of, score
 from profiletool.joints.optimal.lines import Discretisation
 from profiletool.joints.optimal.polish import goal_of, polish
@@ -123,7 +124,7 @@ def test_a_term_added_in_one_place_counts_for_all_who_ask(
         )  # fmt: skip
         return float(free_step(linear, np.full(1, 9.0), damping_mm=1e-6)[0])
 
-    goal = goal_of(profile, limits, 0.3)
+    goal = goal_of(profile, limits, Aim(0.3))
     plain, start = searched(), searched()
     on = polish(start, MODEL, goal)
     assert mean_distance(objective_of(0.3)) == pytest.approx(0.0, abs=1e-9)

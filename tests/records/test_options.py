@@ -10,6 +10,7 @@ import pytest
 
 from formula.files import load_formula
 from profiletool.errors import UsageError
+from profiletool.records.built import BuildErrors
 from profiletool.records.making import check_request, check_scale, request_of
 from profiletool.records.options import DESIGN, FLAGS, in_flags
 from profiletool.records.request import Request, ScaleRequest, TubeSpec
@@ -22,7 +23,7 @@ def paths_of(record: object, prefix: str = "") -> set[str]:
     found = set()
     for field in fields(record):  # type: ignore[arg-type]
         value = getattr(record, field.name)
-        nested = is_dataclass(value)
+        nested = is_dataclass(value) and not isinstance(value, BuildErrors)  # one option holds it
         found |= paths_of(value, f"{field.name}.") if nested else {prefix + field.name}
     return found
 

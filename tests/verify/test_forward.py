@@ -18,6 +18,7 @@ from profiletool.joints.bounds import Limits
 from profiletool.joints.closest import closest_points, distance_jacobian
 from profiletool.joints.correction.correct import CannotBend, Iterate, StepSizes, correct
 from profiletool.joints.correction.parameters import Parameters
+from profiletool.joints.expected import Aim
 from profiletool.profile.curve import arc_length
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
@@ -111,7 +112,7 @@ def test_a_target_made_by_fe_is_reached(bent: Iterate[Solution]) -> None:
     said: list[str] = []
     found = correct(
         FeForwardModel(TubeSpec()), Response.load(), NUMBERS, VECTOR + off, target_of(bent.shape),
-        StepSizes(0.0, 0.0, 0.0), 0.3, said.append,
+        StepSizes(0.0, 0.0, 0.0), Aim(0.3), said.append,
     )  # fmt: skip
     assert found.rms_mm[0] > 0.3
     assert np.sqrt(np.mean(found.best.closest.distance[:-3] ** 2)) < 0.1

@@ -23,6 +23,7 @@ from profiletool.joints.closest import (
 from profiletool.joints.correction.parameters import Parameters, PosedChain, facing_motion
 from profiletool.joints.correction.steps import Linear
 from profiletool.joints.correction.surrogate import Surrogate
+from profiletool.joints.expected import Aim
 from profiletool.joints.misfit import Deviation, objective_of
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
@@ -32,7 +33,7 @@ S = TypeVar("S")
 
 _SHORTEST = 0.1  # share of a step's reach below which it gives up
 _MOST_FREE, _MOST_BUILT = 5, 5
-_WORTH = 0.8  # of the cost: a step that promises less is not taken
+_WORTH = 0.2  # of the nominal cost: a step that promises less gain is not taken
 _ENOUGH_MM = 0.3  # RMS of a shape whose numbers will be rounded: rounding costs as much
 _SPARE_MM = 1.0  # how far the tube goes on beyond the profile's end
 
@@ -123,7 +124,7 @@ def correct(
     vector: FloatArray,
     profile: Profile,
     steps: StepSizes,
-    interference_mm: float,
+    aim: Aim,
     say: Callable[[str], None],
 ) -> Corrected[S]:
     """Correct an actuator.
@@ -138,8 +139,7 @@ def correct(
         The first guess.
     profile : Profile
     steps : StepSizes
-    interference_mm : float
-        How deep the tube may lie in the object.
+    aim : Aim
     say : callable
         Takes one line for every iterate.
 
@@ -148,7 +148,7 @@ def correct(
     CannotBend
         When the first guess cannot be bent.
     """
-    loop = _Loop(forward, model, profile, interference_mm, say)
+    loop = _Loop(forward, model, profile, aim, say)
     coarse = max(steps.alpha, steps.place) > 0.0
     first = loop.iterate(parameters, vector, None, "first guess")
     best = loop.free(first, _ENOUGH_MM if coarse else 0.0)
@@ -163,11 +163,12 @@ class _Loop(Generic[S]):
         forward: ForwardModel[S],
         model: Model,
         profile: Profile,
-        interference_mm: float,
+        aim: Aim,
         say: Callable[[str], None],
     ) -> None:
         self._forward, self._model = forward, model
-        self._objective, self._say = objective_of(interference_mm), say
+        self._objective, self._say = objective_of(aim.interference_mm), say
+        self._expected = aim.expected
         self._points = target_points(profile)
         self.rms: list[float] = []
 
@@ -175,11 +176,11 @@ class _Loop(Generic[S]):
         """Take free steps as long as they pay and the shape is farther off than is enough."""
         share, surrogate = 1.0, None
         for _ in range(_MOST_FREE):
-            if self._cost(best) < enough_mm**2:
+            if self._nominal(best) < enough_mm**2:
                 break
             surrogate = surrogate or self._surrogate(best)
             target, promised = surrogate.free(share)
-            if promised > _WORTH * self._cost(best):
+            if not self._pays(promised, best):
                 break
             iterate = self._tried(best, target, "all numbers free")
             if iterate is not None and self._cost(iterate) < self._cost(best):
@@ -200,7 +201,7 @@ class _Loop(Generic[S]):
             target, promised = surrogate.built(_step_sizes(best.vector, best.parameters, steps))
             if any(np.allclose(target, other, atol=1e-9) for other in tried):
                 break
-            if built is not None and promised > _WORTH * self._cost(built):
+            if built is not None and not self._pays(promised, built):
                 break
             tried.append(target)
             iterate = self._tried(best, target, "in steps that can be built")
@@ -213,8 +214,22 @@ class _Loop(Generic[S]):
                 surrogate = surrogate.broyden_update(target, iterate.closest.distance)
         return best if built is None else built
 
-    def _cost(self, iterate: Iterate[S]) -> float:
+    def _nominal(self, iterate: Iterate[S]) -> float:
         return float(self._objective.cost(Deviation(iterate.closest.distance)))
+
+    def _cost(self, iterate: Iterate[S]) -> float:
+        """Cost of the shape, and of what a build's errors do to it, mm²."""
+        nominal = self._nominal(iterate)
+        if self._expected is None:
+            return nominal
+        rows = self._expected.rows(
+            iterate.parameters, iterate.vector, iterate.shape, iterate.closest
+        )
+        return nominal + rows.cost
+
+    def _pays(self, promised: float, best: Iterate[S]) -> bool:
+        """Tell whether a promised cost is worth a run of the forward model."""
+        return promised <= self._cost(best) - _WORTH * self._nominal(best)
 
     def _tried(self, near: Iterate[S], vector: FloatArray, what: str) -> Iterate[S] | None:
         try:
@@ -249,7 +264,8 @@ class _Loop(Generic[S]):
             scale=iterate.parameters.scale(),
             objective=self._objective,
         )
-        return Surrogate(linear, iterate.parameters, self._model, self._points)
+        parameters, points = iterate.parameters, self._points
+        return Surrogate(linear, parameters, self._model, points, self._expected)
 
 
 def _step_sizes(vector: FloatArray, parameters: Parameters, steps: StepSizes) -> FloatArray:

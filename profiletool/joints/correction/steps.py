@@ -13,6 +13,7 @@ from itertools import combinations
 import numpy as np
 from scipy.optimize import lsq_linear
 
+from profiletool.joints.expected import ExpectedRows
 from profiletool.joints.misfit import Deviation, Objective
 from profiletool.records.units import BoolArray, FloatArray
 
@@ -36,6 +37,8 @@ class Linear:
         Where the distances were found, where better ones are looked for nearby, the bounds, and
         changes that matter about equally.
     objective : Objective
+    errors : ExpectedRows or None
+        What errors of a build cost at ``vector``.
     """
 
     distance: FloatArray
@@ -46,11 +49,19 @@ class Linear:
     high: FloatArray
     scale: FloatArray
     objective: Objective
+    errors: ExpectedRows | None = None
 
     def predicted(self, vector: FloatArray) -> FloatArray:
         """Distances (M,) at another vector."""
         distance: FloatArray = self.distance + self.jacobian @ (vector - self.vector)
         return distance
+
+    def cost(self, distances: FloatArray, vectors: FloatArray) -> FloatArray:
+        """Cost, mm², of distances (..., M) and of errors at vectors (..., q)."""
+        total: FloatArray = self.objective.cost(Deviation(distances))
+        if self.errors is not None:
+            total = total + np.sum(self.errors.moved(vectors - self.vector) ** 2, axis=-1)
+        return total
 
 
 def free_step(
@@ -75,10 +86,16 @@ def free_step(
     base = np.where(free, model.vector, at)
     here = Deviation(model.predicted(base), model.jacobian[:, free] * model.scale[free])
     start = model.vector[free]
-    damping = damping_mm * np.sqrt(len(here.distance)) * np.eye(int(free.sum()))
+    many = np.sqrt(len(here.distance))
+    damping = damping_mm * many * np.eye(int(free.sum()))
     away = (start - model.centre[free]) / model.scale[free]
+    rows, values = damping, damping @ away
+    if model.errors is not None:
+        errors = model.errors.scaled(many)
+        rows = np.vstack([rows, errors.jacobian[:, free] * model.scale[free]])
+        values = np.append(values, errors.moved(base - model.vector))
     bounds = ((low - start) / model.scale[free], (high - start) / model.scale[free])
-    change = _least_squares(model.objective, here, (damping, damping @ away), bounds)
+    change = _least_squares(model.objective, here, (rows, values), bounds)
     best[free] = np.clip(start + change * model.scale[free], low, high)
     return best
 
@@ -86,10 +103,10 @@ def free_step(
 def _least_squares(
     objective: Objective,
     here: Deviation,
-    damping: tuple[FloatArray, FloatArray],
+    others: tuple[FloatArray, FloatArray],
     bounds: tuple[FloatArray, FloatArray],
 ) -> FloatArray:
-    """Give the change of numbers, (q,), that makes the objective and the damping's rows least.
+    """Give the change of numbers, (q,), that makes the objective and the other rows least.
 
     One-sided terms: the rows that count are those that counted after the change before.
     """
@@ -99,7 +116,7 @@ def _least_squares(
     active = [np.zeros(len(here.distance), dtype=bool) for _ in one_sided]
     for _ in range(_ACTIVE_ROUNDS):
         parts = zip(one_sided, active, strict=True)
-        rows = [*always, damping, *(term.linear(here, where) for term, where in parts)]
+        rows = [*always, others, *(term.linear(here, where) for term, where in parts)]
         A, b = (np.concatenate([row[k] for row in rows]) for k in (0, 1))
         change = lsq_linear(A, -b, bounds, method="bvls").x
         now = [term.active(here.moved(change)) for term in one_sided]
@@ -158,7 +175,7 @@ def _local_search(
 
     def cost(distances: FloatArray, vectors: FloatArray) -> FloatArray:
         far = ((vectors - model.centre) * weight)[..., discrete]
-        total: FloatArray = model.objective.cost(Deviation(distances)) + np.sum(far**2, axis=-1)
+        total: FloatArray = model.cost(distances, vectors) + np.sum(far**2, axis=-1)
         return total
 
     distance = model.predicted(best)

@@ -12,11 +12,20 @@ from profiletool.bending.model import Model
 from profiletool.joints.closest import closest_points, distance_jacobian
 from profiletool.joints.correction.parameters import Parameters, facing_motion
 from profiletool.joints.correction.steps import Linear, built_step, free_step
-from profiletool.joints.misfit import Deviation
+from profiletool.joints.expected import Expected, ExpectedRows
 from profiletool.records.units import FloatArray
 
 _REACH = 3.0  # steps over the scale
 _ROUNDS = 5  # of a search
+
+
+@dataclass(frozen=True)
+class _Bent:
+    """Distances (M,), their derivatives (M, q) and what errors cost, by the model."""
+
+    distance: FloatArray
+    jacobian: FloatArray
+    errors: ExpectedRows | None
 
 
 @dataclass(frozen=True)
@@ -36,12 +45,15 @@ class Surrogate:
         The bending model.
     points : (M, 2) mm
         Of the profile.
+    expected : Expected or None
+        What errors of a build cost, where they count.
     """
 
     linear: Linear
     parameters: Parameters
     model: Model
     points: FloatArray
+    expected: Expected | None = None
 
     def free(self, share: float) -> tuple[FloatArray, float]:
         """Find the best vector within a share of the reach, and the cost it promises."""
@@ -71,7 +83,7 @@ class Surrogate:
         at = best
         for _ in range(_ROUNDS):
             near = self._near(self._bent(at), at)
-            promised = float(base.objective.cost(Deviation(near.distance)))
+            promised = float(near.cost(near.distance, at))
             if promised < least:
                 best, least = at, promised
             after = step(near)
@@ -81,21 +93,29 @@ class Surrogate:
         return best, least
 
     @cached_property
-    def _base(self) -> tuple[FloatArray, FloatArray]:
+    def _base(self) -> _Bent:
         return self._bent(self.linear.vector)
 
-    def _bent(self, vector: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Distances and derivatives by the model alone."""
+    def _bent(self, vector: FloatArray) -> _Bent:
+        """Bend the actuator of a vector by the model alone."""
         at = self.parameters.unpack(vector)
         shape = self.model.shape(at.chain, at.pressure, at.pose, self.parameters.sign)
         closest = closest_points(shape.facing, self.points, self.parameters.sign)
         motion = facing_motion(self.parameters, self.model, vector, shape)
-        return closest.distance, distance_jacobian(closest, motion)
+        errors = None
+        if self.expected is not None:
+            errors = self.expected.rows(self.parameters, vector, shape, closest)
+        return _Bent(closest.distance, distance_jacobian(closest, motion), errors)
 
-    def _near(self, bent: tuple[FloatArray, FloatArray], vector: FloatArray) -> Linear:
+    def _near(self, bent: _Bent, vector: FloatArray) -> Linear:
         """Distances and derivatives at another vector: the model's, shifted."""
-        base = self.linear
-        distance, jacobian = self._base
-        slope = base.jacobian - jacobian
-        shift = base.distance - distance + slope @ (vector - base.vector)
-        return replace(base, vector=vector, distance=bent[0] + shift, jacobian=bent[1] + slope)
+        base, model = self.linear, self._base
+        slope = base.jacobian - model.jacobian
+        shift = base.distance - model.distance + slope @ (vector - base.vector)
+        return replace(
+            base,
+            vector=vector,
+            distance=bent.distance + shift,
+            jacobian=bent.jacobian + slope,
+            errors=bent.errors,
+        )

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from profiletool.bending.model import Model
+from profiletool.joints.expected import ErrorSizes, angle_variance, slopes_of
 from profiletool.records.units import Float32, FloatArray
 
 LEAST_TURN = float(np.radians(3.0))  # a joint that turns less is none
@@ -40,6 +41,8 @@ class Bends:
     bulge, slope : (K, T, X) mm, cosine of the heading
         At places from ``-before`` to `PAST_MM` about the vertex.
     before : float, mm
+    variance : (K, T) rad²
+        Of the angle, by errors of a joint's own.
     """
 
     least: FloatArray
@@ -48,9 +51,16 @@ class Bends:
     bulge: Float32
     slope: Float32
     before: float
+    variance: FloatArray
 
 
-def tabulate(model: Model, pressure: float, openF: FloatArray, sense: float) -> Bends:
+def tabulate(
+    model: Model,
+    pressure: float,
+    openF: FloatArray,
+    sense: float,
+    sizes: ErrorSizes | None = None,
+) -> Bends:
     """Ask the model for the joints of one sense at one pressure.
 
     Parameters
@@ -60,6 +70,8 @@ def tabulate(model: Model, pressure: float, openF: FloatArray, sense: float) -> 
     openF : (K,) array, mm
     sense : float
         +1 toward the object, -1 away from it.
+    sizes : ErrorSizes, optional
+        Of a build's errors; without them nothing is ever off.
     """
     narrow, wide = model.alpha
     least = np.maximum(model.theta(openF, wide, pressure), LEAST_TURN)
@@ -84,7 +96,12 @@ def tabulate(model: Model, pressure: float, openF: FloatArray, sense: float) -> 
         where = np.linspace(0.0, _SAMPLED - 1.0, _ANGLES)
         reach[k] = np.interp(where, np.arange(_SAMPLED), reaches[k])
         bulge[k], slope[k] = np.moveaxis(_between(halves, where), 1, 0)
-    return Bends(least, most, reach, bulge, slope, float(before))
+    variance = np.zeros(shape[:2])
+    if sizes is not None:
+        theta = np.linspace(least, most, _ANGLES, axis=1)
+        alpha = np.nan_to_num(model.alpha_for(openF[:, None], theta, pressure), nan=narrow)
+        variance = angle_variance(slopes_of(model, openF[:, None], alpha, pressure), sizes)
+    return Bends(least, most, reach, bulge, slope, float(before), variance)
 
 
 def _lines(

@@ -15,6 +15,7 @@ from profiletool.bending.model import Chain, Model
 from profiletool.errors import Infeasible, NoObject
 from profiletool.joints.bounds import Limits, cuts_of, limits_of
 from profiletool.joints.correction.parameters import PosedChain
+from profiletool.joints.expected import BUILT_WEIGHT, Aim, ErrorSizes, Expected
 from profiletool.joints.misfit import is_good, score
 from profiletool.joints.optimal.lines import Discretisation
 from profiletool.joints.optimal.polish import Goal, Polished, at_bound, goal_of, judge, polish
@@ -85,12 +86,15 @@ class ChoiceOptions:
         Number of joints; as few as reach the tolerance where None.
     base_free : bool
         Whether the base may leave the profile's start tangent.
+    sizes : ErrorSizes or None
+        Of a build's errors; the nominal shape alone counts where None.
     """
 
     tolerance_mm: float = TOLERANCE_MM
     interference_mm: float = INTERFERENCE_MM
     count: int | None = None
     base_free: bool = False
+    sizes: ErrorSizes | None = None
 
 
 @dataclass(frozen=True)
@@ -139,12 +143,14 @@ def choose(
             "take another `side` or stretch, or a smaller `tolerance_mm`"
         )
     limits, cuts = limits_of(model, spec, options.base_free), cuts_of(model, spec)
+    expected = None if options.sizes is None else Expected(model, options.sizes)
+    aim = Aim(options.interference_mm, expected)
     reached = profile
     for _ in range(_CUTS):
         # What lies farther down than the tube can be long is out of reach whatever it does.
         reached = _first_part(reached, limits.max_length_mm)
         searches = _searches(reached, model, cuts, limits, options)
-        goal = goal_of(reached, limits, options.interference_mm)
+        goal = goal_of(reached, limits, aim)
         best, polished = _fewest(searches, model, goal, options)
         excess = best.posed.chain.length - limits.max_length_mm
         if excess <= 0.0:
@@ -156,7 +162,7 @@ def choose(
     at = best.posed
     trade_off = TradeOff(searches[0].pressure, _rms(searches, reached), polished)
     if reached is not profile:
-        best = judge(at, model, goal_of(profile, limits, options.interference_mm))
+        best = judge(at, model, goal_of(profile, limits, aim))
     return Choice(
         at.chain, at.pressure, at.pose, best.shape, best.misfit, best.depth, trade_off, limits
     )
@@ -184,7 +190,18 @@ def _searches(
     most = min(options.count or MOST_JOINTS, room)
     searches: list[SearchResult] = []
     for grid, enough in ((FINE, 2.0 * options.tolerance_mm), (WIDE, _FAR_MM), (FAR, np.inf)):
-        searches.append(search(profile, model, cuts, limits, options.interference_mm, grid, most))
+        searches.append(
+            search(
+                profile,
+                model,
+                cuts,
+                limits,
+                options.interference_mm,
+                grid,
+                most,
+                options.sizes,
+            )
+        )
         rms = _rms(searches, profile)
         if (rms[:, -1] if options.count else rms).min() <= enough:
             break
@@ -198,11 +215,12 @@ def _searches(
 
 def _rms(searches: list[SearchResult], profile: Profile) -> FloatArray:
     """Best RMS of several searches, on the pressures of the first: (P, J)."""
-    best = searches[0].cost.copy()
-    for other in searches[1:]:
+    nominal = [one.cost - one.errors for one in searches]
+    best = nominal[0].copy()
+    for other in nominal[1:]:
         # All end at the highest pressure.
-        top = best[-len(other.cost) :]
-        np.minimum(top, other.cost[-len(top) :], out=top)
+        top = best[-len(other) :]
+        np.minimum(top, other[-len(top) :], out=top)
     return np.asarray(np.sqrt(best / profile.length_mm))
 
 
@@ -245,7 +263,9 @@ def _nearest_count(rms: FloatArray, count: int) -> int:
 
 
 def _score(polished: Polished, goal: Goal) -> float:
-    return score(polished.misfit, polished.depth, goal.interference)
+    """Say what decides between polished actuators, mm: the shape, and what errors cost."""
+    nominal = score(polished.misfit, polished.depth, goal.aim.interference_mm)
+    return float(np.hypot(nominal, np.sqrt(BUILT_WEIGHT) * polished.errors))
 
 
 def _best_of(

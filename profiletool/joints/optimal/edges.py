@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from profiletool.joints.expected import BUILT_WEIGHT
 from profiletool.joints.misfit import LENGTH_COST_MM2, Deviation, Objective
 from profiletool.joints.optimal.bends import STEP_MM, Bends
 from profiletool.joints.optimal.lines import CandidateLines
@@ -35,6 +36,8 @@ class Edges:
         Magnitude.
     before, after : (E,) mm
         From the first line's place to the vertex, and from there to the second line's place.
+    lever2 : (E,) mm³ per rad²
+        See `CandidateLines`.
     straight : (E,)
         Cost of the points that are not near the vertex.
     near : (E, Z) mm
@@ -51,6 +54,7 @@ class Edges:
     turn: FloatArray
     before: FloatArray
     after: FloatArray
+    lever2: FloatArray
     straight: FloatArray
     near: Float32
     at: Float32
@@ -65,11 +69,14 @@ class Priced:
     ----------
     cost : (E,) mm³
         Infinite where no joint fits.
+    errors : (E,) mm³
+        The part of the cost that errors of a build make.
     cut : (E,)
         Index of its openF.
     """
 
     cost: FloatArray
+    errors: FloatArray
     cut: NDArray[np.intp]
 
 
@@ -144,7 +151,9 @@ def edges_of(
     start, end, before, after = start[kept], end[kept], before[kept], after[kept]
     pairs = _Pairs(start, end, before, after, split[kept], low[kept], high[kept])
     near, at, weight = _near(lines, pairs, wide)
-    return Edges(sense, start, end, turn[kept], before, after, straight[kept], near, at, weight)
+    lever2 = lines.lever2[np.minimum(pairs.split, len(lines.lever2) - 1)]
+    turn, straight = turn[kept], straight[kept]
+    return Edges(sense, start, end, turn, before, after, lever2, straight, near, at, weight)
 
 
 def _turning(
@@ -212,7 +221,7 @@ def price(
         Least wrapped length between two windows.
     objective : Objective
     """
-    cost = np.full(len(edges.turn), np.inf)
+    cost, errors = np.full(len(edges.turn), np.inf), np.zeros(len(edges.turn))
     cut = np.zeros(len(edges.turn), dtype=np.intp)
     sense = np.float32(edges.sense)
     room = np.where(edges.start < lines.base, -np.inf, 0.5 * wrap_mm)
@@ -239,8 +248,9 @@ def price(
         at_points = Deviation((edges.near[fits] + sense * bulge) * slope)
         near = np.einsum("ez,ez->e", objective.density(at_points), edges.weight[fits])
         tube = edges.before[fits] + edges.after[fits] - 2.0 * reach + length
-        total = edges.straight[fits] + near + LENGTH_COST_MM2 * tube
+        off = BUILT_WEIGHT * edges.lever2[fits] * bends.variance[k, angle]
+        total = edges.straight[fits] + near + LENGTH_COST_MM2 * tube + off
         better = total < cost[fits]
-        cost[fits[better]] = total[better]
+        cost[fits[better]], errors[fits[better]] = total[better], off[better]
         cut[fits[better]] = k
-    return Priced(cost, cut)
+    return Priced(cost, errors, cut)

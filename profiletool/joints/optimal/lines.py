@@ -68,6 +68,11 @@ class CandidateLines:
         The points in the line's frame: along it from ``point``, and off it away from the object.
     weight : (M,) mm
         Length of profile that each point stands for; 0 behind the profile's end.
+    lever2 : (M,) mm³ per rad²
+        Integral, over the profile behind a point, of the square of the normal motion there by an
+        angle at the point.
+    swing2 : float, mm³
+        Integral of the square of the normal motion where all angles grow by their own size.
     base : int
         The first so many lines are base lines.
     """
@@ -78,6 +83,8 @@ class CandidateLines:
     along: FloatArray
     out: FloatArray
     weight: FloatArray
+    lever2: FloatArray
+    swing2: float
     base: int
 
 
@@ -110,7 +117,25 @@ def lines_of(profile: Profile, limits: Limits, grid: Discretisation) -> Candidat
     cos, sin = np.cos(heading)[:, None], np.sin(heading)[:, None]
     x, y = (points[None, :, k] - point[:, k, None] for k in (0, 1))
     along, out = cos * x + sin * y, profile.sign * (sin * x - cos * y)
-    return CandidateLines(place, line_turn, point, along, out, weight, len(turns))
+    lever = _levers(points, float(profile.heading[0]) + profile.sign * turn)
+    swing = np.diff(turn, prepend=0.0) @ lever
+    return CandidateLines(
+        place,
+        line_turn,
+        point,
+        along,
+        out,
+        weight,
+        np.asarray(lever**2 @ weight),
+        float(swing**2 @ weight),
+        len(turns),
+    )
+
+
+def _levers(points: FloatArray, heading: FloatArray) -> FloatArray:
+    """Give the normal motion of points by an angle at another one before them: (M by, M of)."""
+    arm = points[None] - points[:, None]
+    return np.triu(np.einsum("mk,vmk->vm", direction(heading), arm), 1)
 
 
 def _fan(

@@ -20,6 +20,7 @@ from profiletool.joints.correction.parameters import (
     facing_motion,
     parameters_of,
 )
+from profiletool.joints.expected import Aim, ExpectedRows
 from profiletool.joints.misfit import Deviation, depth_inside, misfit, objective_of
 from profiletool.joints.optimal.descent import descend
 from profiletool.records.design import Misfit
@@ -41,32 +42,33 @@ class Goal:
     points : (M, 2) mm
         Of the profile, evenly spaced.
     limits : Limits
-    interference : float, mm
-        How deep the tube may lie in the object.
+    aim : Aim
     """
 
     profile: Profile
     points: FloatArray
     limits: Limits
-    interference: float
+    aim: Aim
 
 
 @dataclass(frozen=True)
 class Polished:
     """An actuator with the shape that the model gives it.
 
-    ``depth`` is how deep it lies in the object at most, mm.
+    ``depth`` is how deep it lies in the object at most, ``errors`` what a build's errors move it by
+    (RMS), mm.
     """
 
     posed: PosedChain
     shape: Shape
     misfit: Misfit
     depth: float
+    errors: float
 
 
-def goal_of(profile: Profile, limits: Limits, interference: float) -> Goal:
+def goal_of(profile: Profile, limits: Limits, aim: Aim) -> Goal:
     """Sample a profile for a polish."""
-    return Goal(profile, target_points(profile), limits, interference)
+    return Goal(profile, target_points(profile), limits, aim)
 
 
 def polish(posed: PosedChain, model: Model, goal: Goal, runs: int = 12) -> Polished:
@@ -118,7 +120,11 @@ def judge(posed: PosedChain, model: Model, goal: Goal) -> Polished:
     """Bend an actuator and measure it against the profile."""
     shape = model.shape(posed.chain, posed.pressure, posed.pose, goal.profile.sign)
     fit = misfit(shape, goal.profile)
-    return Polished(posed, shape, fit, depth_inside(shape, goal.profile))
+    errors = 0.0
+    if goal.aim.expected is not None:
+        closest = closest_points(shape.facing, goal.points, goal.profile.sign)
+        errors = goal.aim.expected.rms_mm(posed, shape, closest)
+    return Polished(posed, shape, fit, depth_inside(shape, goal.profile), errors)
 
 
 def at_bound(posed: PosedChain, limits: Limits) -> FloatArray:
@@ -134,13 +140,15 @@ class _Problem:
 
     def __init__(self, parameters: Parameters, model: Model, goal: Goal) -> None:
         self._parameters, self._model, self._goal = parameters, model, goal
-        self._objective = objective_of(goal.interference, goal.limits.max_length_mm)
+        self._objective = objective_of(goal.aim.interference_mm, goal.limits.max_length_mm)
         self._last: tuple[FloatArray, Shape, ClosestPoints] | None = None
 
     def residuals(self, vector: FloatArray) -> FloatArray:
         _, closest = self._bent(vector)
         at = Deviation(closest.distance, length=self._least_length(vector))
-        return self._objective.residuals(at)
+        residuals = self._objective.residuals(at)
+        errors = self._errors(vector)
+        return residuals if errors is None else np.append(residuals, errors.values)
 
     def jacobian(self, vector: FloatArray) -> FloatArray:
         shape, closest = self._bent(vector)
@@ -154,7 +162,17 @@ class _Problem:
             self._least_length(vector),
             longer,
         )
-        return self._objective.jacobian(at)
+        jacobian = self._objective.jacobian(at)
+        errors = self._errors(vector)
+        return jacobian if errors is None else np.vstack([jacobian, errors.jacobian])
+
+    def _errors(self, vector: FloatArray) -> ExpectedRows | None:
+        """Rows of the errors, weighed as all of the points together."""
+        expected = self._goal.aim.expected
+        if expected is None:
+            return None
+        rows = expected.rows(self._parameters, vector, *self._bent(vector))
+        return rows.scaled(np.sqrt(len(self._goal.points)))
 
     def _bent(self, vector: FloatArray) -> tuple[Shape, ClosestPoints]:
         if self._last is None or not np.array_equal(self._last[0], vector):

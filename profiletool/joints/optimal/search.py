@@ -6,13 +6,14 @@ The search is exact for its discretisation: an edge is left out only if it alone
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from profiletool.bending.model import Chain, Model, centers_of
 from profiletool.joints.bounds import Limits
 from profiletool.joints.correction.parameters import PosedChain
+from profiletool.joints.expected import BUILT_WEIGHT, ErrorSizes, slopes_of
 from profiletool.joints.misfit import Objective, objective_of
 from profiletool.joints.optimal.bends import Bends, tabulate
 from profiletool.joints.optimal.edges import Edges, Priced, edges_of, price, summed_cost
@@ -25,11 +26,12 @@ MOST_JOINTS = 24
 _FIRST_MOST_MM = 1.0  # RMS that edges may cost at first
 _WIDEN = 9.0
 _WIDENED = 3
+_USUAL_ALPHA = float(np.radians(96.0))  # at which angles grow with the pressure as they do
 
 
 @dataclass(frozen=True)
 class PathJoint:
-    """One joint of a path: the lines before and behind it."""
+    """One joint of a path: the lines before and behind it; ``errors`` as in `Priced`."""
 
     sense: float
     start: int
@@ -38,6 +40,7 @@ class PathJoint:
     before: float
     after: float
     openF: float
+    errors: float
 
 
 @dataclass(frozen=True)
@@ -50,6 +53,8 @@ class SearchResult:
     openF : (K,) mm
     cost : (P, J) mm³
         For 1 to J joints; infinite where no path is known.
+    errors : (P, J) mm³
+        The part of the cost that errors of a build make.
     most_cost : float
         Costs below it are those of the optimum.
     """
@@ -62,6 +67,7 @@ class SearchResult:
     priced: tuple[tuple[Priced, ...], ...]
     totals: tuple[FloatArray, ...]
     cost: FloatArray
+    errors: FloatArray
     most_cost: float
     objective: Objective
 
@@ -85,6 +91,7 @@ class SearchResult:
                         float(edges.before[e]),
                         float(edges.after[e]),
                         float(self.openF[prices.cut[e]]),
+                        float(prices.errors[e]),
                     )
             assert step is not None
             steps.append(step)
@@ -133,6 +140,7 @@ def search(
     interference: float,
     grid: Discretisation,
     most_joints: int,
+    sizes: ErrorSizes | None = None,
 ) -> SearchResult:
     """Find the least cost for 1 to ``most_joints`` joints at every pressure of a grid.
 
@@ -147,10 +155,14 @@ def search(
         How deep the tube may lie in the object before it costs more.
     grid : Discretisation
     most_joints : int
+    sizes : ErrorSizes, optional
+        Of a build's errors; without them the nominal shape alone counts.
     """
     lines, objective = lines_of(profile, limits, grid), objective_of(interference)
     pressure = _pressures(limits, grid)
-    bends = [[tabulate(model, float(P), openF, sense) for sense in (1.0, -1.0)] for P in pressure]
+    bends = [
+        [tabulate(model, float(P), openF, sense, sizes) for sense in (1.0, -1.0)] for P in pressure
+    ]
     most = _FIRST_MOST_MM**2 * profile.length_mm
     for attempt in range(_WIDENED):
         senses = [
@@ -170,7 +182,7 @@ def search(
         if cost.min() <= most or attempt == _WIDENED - 1:
             break
         most *= _WIDEN
-    return SearchResult(
+    found = SearchResult(
         lines,
         tuple(senses),
         pressure,
@@ -179,9 +191,23 @@ def search(
         tuple(priced),
         tuple(totals),
         cost,
+        np.zeros_like(cost),
         most,
         objective,
     )
+    return found if sizes is None else _with_errors(found, model, sizes)
+
+
+def _with_errors(found: SearchResult, model: Model, sizes: ErrorSizes) -> SearchResult:
+    """Tell the errors' part of the costs, and add that of the pressure, which paths share."""
+    errors = np.zeros_like(found.cost)
+    for p, n in np.argwhere(np.isfinite(found.cost)):
+        errors[p, n] = sum(step.errors for step in found.path(int(p), int(n) + 1))
+    alpha, pressure = np.clip(_USUAL_ALPHA, *model.alpha), found.pressure[:, None]
+    slope = slopes_of(model, found.openF, alpha, pressure).pressure
+    growth = np.mean(slope / model.theta(found.openF, alpha, pressure), axis=1)
+    common = BUILT_WEIGHT * found.lines.swing2 * (sizes.pressure * growth[:, None]) ** 2
+    return replace(found, cost=found.cost + common, errors=errors + common)
 
 
 def _pressures(limits: Limits, grid: Discretisation) -> FloatArray:

@@ -24,6 +24,7 @@ from profiletool.joints.correction.correct import (
     correct,
 )
 from profiletool.joints.correction.parameters import Parameters, PosedChain
+from profiletool.joints.expected import Aim
 from profiletool.profile.curve import arc_length
 from profiletool.records.frames import Pose, Shape
 from profiletool.records.profile import Profile
@@ -78,7 +79,7 @@ def corrected(
 ) -> Corrected[None]:
     told: list[str] = [] if said is None else said
     return correct(
-        forward, model, numbers(profile.sign), TRUE + off, profile, steps, 0.3, told.append
+        forward, model, numbers(profile.sign), TRUE + off, profile, steps, Aim(0.3), told.append
     )
 
 
