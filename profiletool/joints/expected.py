@@ -188,7 +188,7 @@ class Expected:
     def _joints(
         self, posed: PosedChain, alpha: FloatArray, pressure: FloatArray | float
     ) -> tuple[FloatArray, FloatArray]:
-        """Give the joints' standard deviations by errors of their own, and by the pressure's: rad."""
+        """Give the angles' standard deviations, rad: by their own errors, by the pressure's."""
         slopes = slopes_of(self.model, posed.chain.openF, alpha, pressure)
         own = np.sqrt(angle_variance(slopes, self.sizes) + _LEAST**2)
         return own, posed.chain.sense * self.sizes.pressure * slopes.pressure
