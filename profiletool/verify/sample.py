@@ -6,13 +6,12 @@ is 1 / c times as stiff.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fem.equilibrium import lagrange
 from fem.errors import BadGeometry, NotConverged
-from fem.near import solve_near
 from fem.solution import Solution
 from fem.solver import solve
 from profiletool.joints.closest import closest_points
@@ -25,8 +24,11 @@ from profiletool.verify.lines import shape_of
 from profiletool.verify.run import ended, said, shortly
 from profiletool.verify.tube import actuator_of
 
-_TRIAL_SHARE = 0.01  # of the pressure: the first step of a trim
-_TRIMS = 2
+# Of the nominal pressure, in rubber of nominal stiffness: where the best pressure is looked for.
+_ABOUT = np.array([0.92, 0.96, 1.0, 1.04, 1.08])
+_APART = 0.01  # of it: nearer states tell no more than one
+_ROUNDS, _STEP_SHARE = 4, 1e-3  # of Gauss-Newton, and of its differences
+_SLACK = 1e-9  # MPa
 
 
 @dataclass(frozen=True)
@@ -110,49 +112,57 @@ def run_draw(design: Design, draw: BuildDraw, points: FloatArray) -> SampledBuil
     stiffer = 1.0 + draw.rubber
     actuator = actuator_of(drawn(design, draw))
     gauze = replace(actuator.gauze, stiffness=actuator.gauze.stiffness / stiffer)
-    actuator = replace(actuator, gauze=gauze)
-    planned = design.pressure_bar / BAR_PER_MPA / stiffer
+    nominal = design.pressure_bar / BAR_PER_MPA
     off = draw.pressure_bar / BAR_PER_MPA / stiffer
-    sign = side_sign(design.source.side)
-
-    def gaps(solution: Solution) -> FloatArray:
-        if solution.critical is not None:
-            raise _Ended(said(ended(solution.critical)))
-        shape = shape_of(solution.mesh, solution.states[-1], design.base_pose, sign)
-        return closest_points(shape.facing, points, sign).distance
-
-    def near(known: Solution, pressure: float) -> Solution:
-        return solve_near(actuator, known, pressure, threads=1)
-
+    as_set = nominal / stiffer + off
+    about = nominal * _ABOUT
+    asked = sorted([as_set, *about[np.abs(about - as_set) > _APART * nominal].tolist()])
     try:
-        planned_state = solve(actuator, [planned], threads=1)
-        trim = _trimmed(near, gaps, planned_state, planned)
-        states = (near(planned_state, planned + off), near(planned_state, trim + off))
-        as_set, trimmed = (float(np.sqrt(np.mean(gaps(state) ** 2))) for state in states)
+        solution = solve(replace(actuator, gauze=gauze), asked, threads=1)
     except NotConverged as error:
-        return SampledBuild(np.nan, np.nan, shortly(error))
-    except (BadGeometry, _Ended) as error:
+        if not isinstance(error.solution, Solution):
+            return SampledBuild(np.nan, np.nan, shortly(error))
+        solution = error.solution
+    except BadGeometry as error:
         return SampledBuild(np.nan, np.nan, str(error))
-    return SampledBuild(as_set, trimmed)
+    line = _Lines(solution, design, points)
+    trim = line.best_pressure(nominal)
+    if max(as_set, trim + off) > line.pressure[-1] + _SLACK:
+        why = "" if solution.critical is None else f": {said(ended(solution.critical))}"
+        return SampledBuild(np.nan, np.nan, f"it does not bear the pressure{why}")
+    return SampledBuild(line.rms(as_set), line.rms(trim + off))
 
 
-class _Ended(Exception):
-    """A build ended at a limit point."""
+class _Lines:
+    """The line of one build at any pressure: a polynomial through the states of its run."""
 
+    def __init__(self, solution: Solution, design: Design, points: FloatArray) -> None:
+        self._points, self._sign = points, side_sign(design.source.side)
+        states = [state for state in solution.states if state.pressure > 0.0]
+        self.pressure = np.array([state.pressure for state in states])
+        self._facing = np.array(
+            [
+                shape_of(solution.mesh, state, design.base_pose, self._sign).facing
+                for state in states
+            ]
+        )
 
-def _trimmed(
-    near: Callable[[Solution, float], Solution],
-    gaps: Callable[[Solution], FloatArray],
-    known: Solution,
-    planned: float,
-) -> float:
-    """Give the pressure at which a build fits best, MPa: Gauss-Newton with secants."""
-    before, gap = planned, gaps(known)
-    at = planned * (1.0 + _TRIAL_SHARE)
-    for _ in range(_TRIMS):
-        known = near(known, at)
-        now = gaps(known)
-        slope = (now - gap) / (at - before)
-        before, gap = at, now
-        at = at - float(now @ slope) / float(slope @ slope)
-    return at
+    def gaps(self, pressure: float) -> FloatArray:
+        """Signed distances at a pressure in MPa: (M,) mm."""
+        facing = np.tensordot(lagrange(self.pressure, pressure), self._facing, 1)
+        return closest_points(facing, self._points, self._sign).distance
+
+    def rms(self, pressure: float) -> float:
+        """Root mean square of the distances at a pressure in MPa, mm."""
+        return float(np.sqrt(np.mean(self.gaps(pressure) ** 2)))
+
+    def best_pressure(self, guess: float) -> float:
+        """Give the pressure at which the build fits best, MPa, within what its states span."""
+        low, high = self.pressure[0], self.pressure[-1]
+        at = float(np.clip(guess, low, high))
+        for _ in range(_ROUNDS):
+            step = _STEP_SHARE * at
+            gap = self.gaps(at)
+            slope = (self.gaps(at + step) - self.gaps(at - step)) / (2.0 * step)
+            at = float(np.clip(at - float(gap @ slope) / float(slope @ slope), low, high))
+        return at
