@@ -21,7 +21,7 @@ from profiletool.verdict.missed import Missed
 from profiletool.verdict.notes import notes_of
 from profiletool.verdict.reasons import misses_of, reasons_of
 from profiletool.verdict.summary import headline, summary
-from profiletool.verify.built import built_of
+from profiletool.verify.built import band_of, built_of
 from profiletool.verify.check import Check, check
 from profiletool.verify.fields import fields_of
 from profiletool.verify.forward import FeForwardModel
@@ -46,6 +46,8 @@ class Result(Draft):
         The tube as the formula bends it.
     check : Check or None
         The finite-element run; None where none was asked for.
+    band : (2, M, 2) array or None
+        Edges of the band about the object-facing line that holds 95 % of builds, mm.
     reasons : tuple of str
         Why the design is infeasible; none where it is feasible.
     misses : tuple of Missed
@@ -153,8 +155,9 @@ def _with_errors(attempt: Draft) -> Draft:
     if fields is None:
         return attempt
     sensitivity = sensitivity_of(design, fields, points)
-    built = built_of(design, fields, attempt.request.build)
-    return replace(attempt, design=replace(design, sensitivity=sensitivity, built=built))
+    build = attempt.request.build
+    design = replace(design, sensitivity=sensitivity, built=built_of(design, fields, build))
+    return replace(attempt, design=design, band=band_of(design, fields, build))
 
 
 def _judged(attempt: Draft) -> Result:

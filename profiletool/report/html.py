@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from profiletool.records.fe import Verification
 from profiletool.report.dossier import Dossier
 from profiletool.report.error import error_figure
+from profiletool.report.expectation import expectation
 from profiletool.report.figure import svg
 from profiletool.report.film import Film, film_of, still_of
 from profiletool.report.markup import Markup, adopted, joined, pairs, tag, text
@@ -22,7 +23,7 @@ from profiletool.report.stage import controls, legend, readout, stage
 from profiletool.report.steps import steps
 from profiletool.report.tables import joint_table, loads, provenance, sensitivity_table
 from profiletool.report.tradeoff import trade_off_figure
-from profiletool.verdict.summary import off_text
+from profiletool.verdict.summary import built_text, off_text
 
 
 def report_html(dossier: Dossier) -> bytes:
@@ -89,6 +90,8 @@ def _sections(dossier: Dossier, film: Film) -> list[_Section]:
         parts.append(_Section("trade-off", "More joints, more pressure", _plot(figure, "to", said)))
     parts.append(_Section("build", "How to build it", _build(dossier)))
     parts.append(_Section("template", "Cut template", _template(dossier)))
+    if design.built is not None:
+        parts.append(_Section("built", "What to expect of the built actuator", expectation(design)))
     if design.sensitivity:
         parts.append(_Section("sensitivity", "What small errors do", sensitivity_table(design)))
     told = provenance(design, found, dossier.options)
@@ -125,8 +128,10 @@ def _verdict(dossier: Dossier) -> Markup:
     elif fit.fe is not None:
         if design.feasible:
             lines.append(tag("p", "Verified by finite elements (FE)", class_="word"))
-        said = f"{off_text(fit.fe)} off the profile at {pressure}"
+        said = f"{off_text(fit.fe)} off the profile at {pressure}, with perfect parts"
         lines.append(tag("p", said if design.feasible else f"By finite elements (FE) {said}."))
+        if design.built is not None:
+            lines.append(tag("p", f"Built by hand: {built_text(design.built)}."))
     good = design.feasible and design.verified
     return tag("div", *lines, class_=f"verdict {'good' if good else 'bad'}", id="verdict")
 

@@ -16,7 +16,7 @@ from profiletool.profile.offset import offset_curve, offset_points
 from profiletool.records.frames import Shape
 from profiletool.records.units import FloatArray
 from profiletool.report.overlay_panel import best_theta_deg, draw_panel
-from profiletool.report.palette import BLUE, GREEN, GREY, INK, PURPLE, RED, SKY, YELLOW
+from profiletool.report.palette import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, RED, SKY, YELLOW
 from profiletool.report.scene import Scene
 
 _DPI = 130
@@ -124,6 +124,10 @@ def _draw_tube(axes: Any, scene: Scene) -> None:
         *_ring(scene.bent).T, color=GREEN, lw=1.3, ls=(0, (6, 2)), zorder=5,
         path_effects=_halo(2.3), label=f"tube at {pressure:.2f} bar ({scene.by})",
     )  # fmt: skip
+    if scene.band is not None:
+        ring = np.concatenate([scene.band[0], scene.band[1][::-1]])
+        label = "95 % of builds, pressure set"
+        _fill(axes, ring, color=ORANGE, alpha=0.45, lw=0, zorder=5, label=label)
     _draw_bent(axes, scene, scene.fe, PURPLE, f"tube at {pressure:.2f} bar (finite elements)")
 
 

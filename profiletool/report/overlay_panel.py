@@ -38,7 +38,11 @@ def _status(design: Design) -> list[tuple[str, str]]:
     if not design.verified:
         lines.append(("NOT VERIFIED by FE", RED))
     elif off is not None:
-        lines.append((f"verified by FE: {off.rms_mm:.2f} mm RMS off the profile", INK))
+        lines.append((f"verified by FE: {off.rms_mm:.2f} mm RMS with perfect parts", INK))
+        if design.built is not None:
+            expected = design.built.expected_rms_mm
+            said = f"built: {expected.as_set:.1f} mm as set, {expected.trimmed:.1f} mm pressure set"
+            lines.append((said, INK))
     return lines
 
 

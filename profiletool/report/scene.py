@@ -57,6 +57,8 @@ class Scene:
         The tube by finite elements; None where it was not verified.
     missed : sequence of (float, float)
         Arc lengths of the stretches that the tube is far off, mm.
+    band : (2, M, 2) array or None
+        Edges of the band that holds 95 % of builds, mm.
     """
 
     backdrop: Backdrop | None
@@ -69,6 +71,7 @@ class Scene:
     straight: Shape
     fe: Shape | None = None
     missed: Sequence[tuple[float, float]] = ()
+    band: FloatArray | None = None
 
 
 def scene_of(result: Result) -> Scene:
@@ -91,6 +94,7 @@ def scene_of(result: Result) -> Scene:
         straight=deform((), layout.length_mm, radius, layout.pose, subject.profile.sign),
         fe=None if result.check is None else result.check.shape,
         missed=tuple((place.start, place.end) for place in result.misses),
+        band=result.band,
     )
 
 

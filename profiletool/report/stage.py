@@ -63,6 +63,7 @@ def stage(scene: Scene, film: Film, *, by_fe: bool) -> Markup:
         _line("rest", ring_path(drawn(scene.straight.facing), drawn(scene.straight.far))),
         *_tube(film, _colour(scene, by_fe)),
         *([_line(f"bent {_colour(scene, False)}", _ring(scene.bent))] if by_fe else []),
+        *([] if scene.band is None else [_line("band", ring_path(*map(drawn, scene.band)))]),
         *_clamp(scene.straight, frame),
         *_profile(scene),
         *_numbers(scene, film, frame),
@@ -93,6 +94,8 @@ def legend(scene: Scene, film: Film, *, by_fe: bool) -> Markup:
     if by_fe:
         told = f"tube as the {scene.by} bends it at {scene.design.pressure_bar:.2f} bar"
         rows.append((f"bent {_colour(scene, False)}", told))
+    if scene.band is not None:
+        rows.append(("band", "95 % of builds, pressure set on each"))
     rows.append(("rest", "tube at rest"))
     rows.append(("clamped", "clamp"))
     items = (tag("li", _key(class_), said) for class_, said in rows)

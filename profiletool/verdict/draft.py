@@ -15,6 +15,7 @@ from profiletool.records.design import Design, Fit, FormulaRef, Gauze, Source, T
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request
+from profiletool.records.units import FloatArray
 from profiletool.subject.find import Subject, digest_of
 from profiletool.verify.check import Check
 
@@ -34,6 +35,8 @@ class Draft:
         The tube as the formula bends it.
     check : Check or None
         The finite-element run; None where none was asked for.
+    band : (2, M, 2) array or None
+        Edges of the band about the object-facing line that holds 95 % of builds, mm.
     """
 
     request: Request
@@ -43,6 +46,7 @@ class Draft:
     design: Design
     shape: Shape
     check: Check | None
+    band: FloatArray | None
 
     @property
     def profile(self) -> Profile:
@@ -75,7 +79,7 @@ def attempt_of(request: Request, subject: Subject, formula: Formula, plan: Plan)
     radius = request.tube.radius_mm
     shape = deform(layout.bends(), layout.length_mm, radius, layout.pose, profile.sign)
     design = _design(request, subject, formula, plan, shape)
-    return Draft(request, subject, formula, plan, design, shape, None)
+    return Draft(request, subject, formula, plan, design, shape, None, None)
 
 
 def _design(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from profiletool.records.built import Built
 from profiletool.records.design import Design, Misfit
 
 
@@ -29,12 +30,23 @@ def joint_table(design: Design) -> str:
         lines.append(f"by the joint response off the profile: {off_text(design.fit.response)}")
     if design.fit.fe is not None:
         lines.append(f"by FE off the profile:                 {off_text(design.fit.fe)}")
+    if design.built is not None:
+        lines.append(f"built by hand, off the profile:        {built_text(design.built)}")
     return "\n".join(lines) + "\n"
 
 
 def off_text(misfit: Misfit) -> str:
     """Say how far a shape lies off its target."""
     return f"{misfit.rms_mm:.2f} mm RMS, {misfit.max_mm:.2f} mm at most"
+
+
+def built_text(built: Built) -> str:
+    """Say what to expect of the actuator that is built, as it is set and as its pressure is."""
+    expected = built.expected_rms_mm
+    return (
+        f"{expected.as_set:.2f} mm RMS expected as set, {expected.trimmed:.2f} mm once its "
+        "pressure is set on it"
+    )
 
 
 def _counted(joints: int) -> str:
@@ -51,12 +63,19 @@ def summary(design: Design) -> str:
     return joint_table(design) + "\n".join((", ".join(verdict), *notes))
 
 
+def _built_short(design: Design) -> str:
+    if design.built is None:
+        return ""
+    expected = design.built.expected_rms_mm
+    return f" with perfect parts ({expected.trimmed:.2f} mm expected once built and set)"
+
+
 def headline(design: Design) -> str:
     """Say in one line what a design is."""
     fit = design.fit.fe or design.fit.response or design.fit.formula
     verified = "verified" if design.verified else "NOT VERIFIED"
     return (
         f"{design.source.file}: {_counted(len(design.joints))} at {design.pressure_bar:.2f} bar, "
-        f"{fit.rms_mm:.2f} mm RMS off the profile, "
+        f"{fit.rms_mm:.2f} mm RMS off the profile{_built_short(design)}, "
         f"{'feasible' if design.feasible else 'INFEASIBLE'}, {verified}"
     )

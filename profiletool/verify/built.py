@@ -21,6 +21,7 @@ from profiletool.records.units import BAR_PER_MPA, FloatArray
 from profiletool.verify.fields import ErrorFields
 
 _SAMPLES, _SEED = 20_000, 2020
+_BAND_SAMPLES = 2_000
 _DECIMALS = 3  # of what goes into design.json
 P95 = 95.0
 
@@ -109,6 +110,21 @@ def built_of(design: Design, fields: ErrorFields, build: BuildErrors) -> Built:
         BuiltMisfit(*(round(value, _DECIMALS) for value in most)),
         parts,
     )
+
+
+def band_of(design: Design, fields: ErrorFields, build: BuildErrors) -> FloatArray:
+    """Give the band about the line that holds 95 % of builds at every point, pressure set.
+
+    Returns
+    -------
+    (2, M, 2) mm
+        Its edge on the object's side first, where both go.
+    """
+    groups = trimmed(groups_of(design, fields, build), fields.pressure)
+    moved = np.vstack([group.moved for group in groups])
+    off = np.abs(draws((_BAND_SAMPLES, len(moved))) @ moved)
+    half = np.percentile(off, P95, axis=0)[:, None] * fields.normal
+    return np.stack([fields.closest - half, fields.closest + half])
 
 
 def _expected(gap: FloatArray, groups: tuple[ErrorGroup, ...]) -> float:

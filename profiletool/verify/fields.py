@@ -25,8 +25,8 @@ class ErrorFields:
     ----------
     gap : (M,) mm
         Signed distance of the line as it is.
-    normal : (M, 2)
-        The direction of motion that counts.
+    closest, normal : (M, 2)
+        Points of the line, mm, and the directions of motion that count.
     pressure : (M,) mm per MPa
     alpha : (n, M) mm per rad
     openF : (n, M)
@@ -40,6 +40,7 @@ class ErrorFields:
     """
 
     gap: FloatArray
+    closest: FloatArray
     normal: FloatArray
     pressure: FloatArray
     alpha: FloatArray
@@ -78,6 +79,7 @@ def fields_of(design: Design, run: Run, points: FloatArray) -> ErrorFields | Non
     (by_rubber,) = off(rates.rubber(pressure))
     return ErrorFields(
         closest.distance,
+        closest.at(shape.facing),
         closest.normal,
         by_pressure,
         off(*rates.alpha),

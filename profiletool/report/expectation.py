@@ -1,0 +1,58 @@
+"""The report's part on the actuator that is built: what to expect, what each error costs."""
+
+from __future__ import annotations
+
+from profiletool.records.built import Built
+from profiletool.records.design import Design
+from profiletool.report.markup import Markup, joined, table, tag
+
+_UNITS = {
+    "pressure": ("pressure", "bar"),
+    "thread": ("uncut threads, each sector", "threads"),
+    "rubber": ("rubber's stiffness", "%"),
+    "wall": ("wall", "%"),
+    "cut": ("length, each cut", "mm"),
+    "place": ("place, each joint", "mm"),
+}
+
+
+def expectation(design: Design) -> Markup:
+    """Tell what to expect of the built actuator; empty where it is not known."""
+    built = design.built
+    if built is None:
+        return joined(())
+    said = (
+        "Perfect parts would lie as near as the verdict says. Parts that are off by as much as the "
+        "table's first column, anywhere within it, lie this far off the profile, to first order in "
+        "the errors. Set the pressure once on the finished actuator: rubber, wall and pressure act "
+        "in one direction, which that takes out. The orange band beside the tube then holds "
+        "95 % of builds."
+    )
+    return joined((tag("p", said), _figures(built), _parts(built)))
+
+
+def _figures(built: Built) -> Markup:
+    rows = [
+        (what, _mm(misfit.as_set), _mm(misfit.trimmed))
+        for what, misfit in (
+            ("expected (root of the mean square)", built.expected_rms_mm),
+            ("95 % of builds lie within", built.p95_rms_mm),
+        )
+    ]
+    heads = ("RMS off the profile (mm)", "at the planned pressure", "pressure set on it")
+    return table(heads, rows, "The actuator that is built", "words")
+
+
+def _parts(built: Built) -> Markup:
+    rows = []
+    for part in built.parts:
+        name, unit = _UNITS[part.what]
+        bound = f"± {getattr(built.build, part.what):g} {unit}"
+        rows.append((name, bound, f"{part.as_set:.2f}", f"{part.trimmed:.2f}"))
+    heads = ("What is off", "by", "before (mm RMS)", "pressure set (mm RMS)")
+    said = "The share of each error: its standard deviation, which is its bound over √3"
+    return table(heads, rows, said)
+
+
+def _mm(value: float | None) -> str:
+    return "–" if value is None else f"{value:.2f}"
