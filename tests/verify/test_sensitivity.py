@@ -17,7 +17,8 @@ from profiletool.records.design import Design, Joint, Sensitivity
 from profiletool.records.frames import Pose, Shape
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
-from profiletool.verify import sensitivity
+from profiletool.verify import fields as fields_module
+from profiletool.verify.fields import fields_of
 from profiletool.verify.run import Run, inflate, run_design
 from profiletool.verify.sensitivity import sensitivity_of
 from profiletool.verify.tube import actuator_of
@@ -68,7 +69,14 @@ def profile(run: Run) -> Profile:
 
 @pytest.fixture(scope="module")
 def found(design: Design, run: Run, profile: Profile) -> tuple[Sensitivity, ...]:
-    return sensitivity_of(design, run, profile)
+    return told_of(design, run, profile)
+
+
+def told_of(design: Design, run: Run, profile: Profile) -> tuple[Sensitivity, ...]:
+    points = target_points(profile)
+    fields = fields_of(design, run, points)
+    assert fields is not None
+    return sensitivity_of(design, fields, points)
 
 
 def off(changed: Shape, profile: Profile) -> FloatArray:
@@ -136,7 +144,7 @@ def test_scale_on_a_straight_profile(design: Design, run: Run) -> None:
     seen = run.verification
     last = replace(seen.last, shape=replace(seen.last.shape, along=x, facing=line))
     straight = replace(run, verification=replace(seen, states=(*seen.states[:-1], last)))
-    entry = sensitivity_of(design, straight, ramp)[-1]
+    entry = told_of(design, straight, ramp)[-1]
     most = 0.01 * ramp.length_mm * np.sin(0.1)
     assert entry.max_mm == pytest.approx(most, abs=0.0051)
     assert entry.rms_mm == pytest.approx(most / np.sqrt(3.0), abs=0.0051)
@@ -149,7 +157,7 @@ def test_the_scales_own_error_where_it_was_measured(
 
     def last(share: float) -> Sensitivity:
         measured = replace(design, source=replace(design.source, scale_error_share=share))
-        return sensitivity_of(measured, run, profile)[-1]
+        return told_of(measured, run, profile)[-1]
 
     assert last(0.035).what == "scale 3.5 % off"
     assert last(0.8).rms_mm == pytest.approx(2.0 * last(0.4).rms_mm, abs=0.016)
@@ -170,5 +178,5 @@ def test_nothing_where_the_tangent_allows_no_derivatives(
     def singular(*_: object, **__: object) -> Sensitivities:
         raise FemError("singular")
 
-    monkeypatch.setattr(sensitivity, "sensitivities", singular)
-    assert sensitivity_of(design, run, profile) == ()
+    monkeypatch.setattr(fields_module, "sensitivities", singular)
+    assert fields_of(design, run, target_points(profile)) is None
