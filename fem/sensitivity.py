@@ -84,7 +84,7 @@ class Sensitivities:
     gauze: Rate
 
     def rubber(self, pressure: float) -> Rate:
-        """Derivatives by the rubber's stiffness, per share of itself, at a pressure in MPa.
+        """Give derivatives by the rubber's stiffness, per share of itself, at a pressure in MPa.
 
         By dimensional analysis: rubber, gauze and pressure in proportion give the same shape.
         Where gravity or the like acts as well, its share is left out.

@@ -14,8 +14,8 @@ from profiletool.bending.constant_curvature import FormulaModel
 from profiletool.bending.model import Chain, Model
 from profiletool.bending.response import Response
 from profiletool.errors import UsageError
+from profiletool.joints.correction.by_model import BendingForwardModel
 from profiletool.joints.correction.correct import (
-    BendingForwardModel,
     CannotBend,
     ForwardModel,
     StepSizes,

@@ -15,7 +15,8 @@ from profiletool.bending.model import Chain, centers_of
 from profiletool.bending.response import Response
 from profiletool.errors import UsageError
 from profiletool.files.design_json import load_design
-from profiletool.joints.correction.correct import BendingForwardModel, CannotBend, Iterate
+from profiletool.joints.correction.by_model import BendingForwardModel
+from profiletool.joints.correction.correct import CannotBend, Iterate
 from profiletool.joints.correction.parameters import PosedChain
 from profiletool.joints.optimal_method import angles, optimal_plan
 from profiletool.pipeline import Request, Result, run

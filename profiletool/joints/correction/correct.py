@@ -20,7 +20,7 @@ from profiletool.joints.closest import (
     distance_jacobian,
     target_points,
 )
-from profiletool.joints.correction.parameters import Parameters, PosedChain, facing_motion
+from profiletool.joints.correction.parameters import Parameters, PosedChain
 from profiletool.joints.correction.steps import Linear
 from profiletool.joints.correction.surrogate import Surrogate
 from profiletool.joints.expected import Aim
@@ -35,6 +35,8 @@ _SHORTEST = 0.1  # share of a step's reach below which it gives up
 _MOST_FREE, _MOST_BUILT = 5, 5
 _WORTH = 0.2  # of the nominal cost: a step that promises less gain is not taken
 _ENOUGH_MM = 0.3  # RMS of a shape whose numbers will be rounded: rounding costs as much
+_AGAIN = 0.97  # of the pressure that a tube stands, where it does not stand the one tried
+_BUILT = "in steps that can be built"
 _SPARE_MM = 1.0  # how far the tube goes on beyond the profile's end
 
 
@@ -92,23 +94,6 @@ class CannotBend(Exception):
         self.reached = reached
 
 
-class BendingForwardModel:
-    """A forward model by a `profiletool.bending.model.Model`."""
-
-    def __init__(self, model: Model) -> None:
-        self._model = model
-
-    def bend(
-        self, posed: PosedChain, sign: float, near: Iterate[None] | None
-    ) -> tuple[Shape, None]:
-        """Bend an actuator."""
-        return self._model.shape(posed.chain, posed.pressure, posed.pose, sign), None
-
-    def motion(self, iterate: Iterate[None]) -> FloatArray:
-        """Motion of the object-facing line's points by each number: (size, N, 2)."""
-        return facing_motion(iterate.parameters, self._model, iterate.vector, iterate.shape)
-
-
 @dataclass(frozen=True)
 class Corrected(Generic[S]):
     """A corrected actuator: the best iterate, and the RMS distance of every one, mm."""
@@ -146,7 +131,7 @@ def correct(
     Raises
     ------
     CannotBend
-        When the first guess cannot be bent.
+        When the first guess cannot be bent, or nothing near it that can be built.
     """
     loop = _Loop(forward, model, profile, aim, say)
     coarse = max(steps.alpha, steps.place) > 0.0
@@ -192,11 +177,19 @@ class _Loop(Generic[S]):
         return best
 
     def built(self, best: Iterate[S], steps: StepSizes) -> Iterate[S]:
-        """Go to numbers that can be built, and on from there."""
+        """Go to numbers that can be built, and on from there.
+
+        Where one of them cannot be bent, others below the pressure that it was found at are tried.
+
+        Raises
+        ------
+        CannotBend
+            When none of them can be bent.
+        """
         if not max(steps.alpha, steps.place, steps.pressure) > 0.0:
             return best
-        surrogate, built = self._surrogate(best), None
-        tried = list[FloatArray]()
+        surrogate, built, problem = self._surrogate(best), None, None
+        tried, most = list[FloatArray](), np.inf
         for _ in range(_MOST_BUILT):
             target, promised = surrogate.built(_step_sizes(best.vector, best.parameters, steps))
             if any(np.allclose(target, other, atol=1e-9) for other in tried):
@@ -204,14 +197,23 @@ class _Loop(Generic[S]):
             if built is not None and not self._pays(promised, built):
                 break
             tried.append(target)
-            iterate = self._tried(best, target, "in steps that can be built")
-            if iterate is None:
-                break
+            try:
+                iterate = self._next(best, target, _BUILT)
+            except CannotBend as found:
+                self._say(f"{_BUILT}: {found}")
+                problem = found
+                if found.reached <= surrogate.linear.low[2 * best.parameters.joints]:
+                    break
+                most = _AGAIN * found.reached
+                surrogate = surrogate.below(most)
+                continue
             if built is None or self._cost(iterate) < self._cost(built):
                 best = built = iterate
-                surrogate = self._surrogate(best)
+                surrogate = self._surrogate(best).below(most)
             else:
                 surrogate = surrogate.broyden_update(target, iterate.closest.distance)
+        if built is None and problem is not None:
+            raise problem
         return best if built is None else built
 
     def _nominal(self, iterate: Iterate[S]) -> float:
@@ -233,10 +235,13 @@ class _Loop(Generic[S]):
 
     def _tried(self, near: Iterate[S], vector: FloatArray, what: str) -> Iterate[S] | None:
         try:
-            return self.iterate(near.parameters.with_end(_end(near)), vector, near, what)
+            return self._next(near, vector, what)
         except CannotBend as problem:
             self._say(f"{what}: {problem}")
             return None
+
+    def _next(self, near: Iterate[S], vector: FloatArray, what: str) -> Iterate[S]:
+        return self.iterate(near.parameters.with_end(_end(near)), vector, near, what)
 
     def iterate(
         self, parameters: Parameters, vector: FloatArray, near: Iterate[S] | None, what: str

@@ -67,6 +67,13 @@ class Surrogate:
         reach = np.where(step > 0.5 * self.linear.scale, np.minimum(step, reach), reach)
         return self._sought(lambda linear: built_step(linear, step, reach))
 
+    def below(self, pressure: float) -> Surrogate:
+        """Keep to pressures below one, MPa."""
+        k = 2 * self.parameters.joints
+        high = self.linear.high.copy()
+        high[k] = max(min(high[k], pressure), self.linear.low[k])
+        return replace(self, linear=replace(self.linear, high=high))
+
     def broyden_update(self, vector: FloatArray, distance: FloatArray) -> Surrogate:
         """Correct the derivatives by the distances, (M,), that were found at another vector.
 

@@ -14,8 +14,8 @@ from profiletool.bending.model import Chain, Model, centers_of
 from profiletool.bending.response import Response
 from profiletool.joints.bounds import Limits
 from profiletool.joints.closest import closest_points
+from profiletool.joints.correction.by_model import BendingForwardModel
 from profiletool.joints.correction.correct import (
-    BendingForwardModel,
     CannotBend,
     Corrected,
     ForwardModel,
@@ -212,6 +212,22 @@ def test_later_ones_are_survived() -> None:
 
 
 def test_the_best_that_could_be_bent_is_kept() -> None:
-    found = corrected(Failing(FORMULA, *range(1, 100)), FORMULA, TARGET, BUILT)
+    found = corrected(Failing(FORMULA, *range(1, 100)), FORMULA, TARGET)
     assert len(found.rms_mm) == 1
     assert (found.best.vector == TRUE + OFF).all()
+
+
+def test_numbers_that_cannot_be_built_are_never_given() -> None:
+    with pytest.raises(CannotBend, match=r"limit point at 1\.40 bar"):
+        corrected(Failing(FORMULA, *range(1, 100)), FORMULA, TARGET, BUILT)
+
+
+def test_where_one_rounding_cannot_be_bent_another_is_tried() -> None:
+    said: list[str] = []
+    usual = corrected(BendingForwardModel(FORMULA), FORMULA, TARGET, BUILT, said=said)
+    first = said.index(next(line for line in said if "can be built" in line))
+    forward = Failing(FORMULA, first)
+    found = corrected(forward, FORMULA, TARGET, BUILT)
+    assert usual.best.posed.pressure > 0.97 * 0.14
+    assert found.best.posed.pressure <= 0.97 * 0.14 + 1e-9
+    assert found.best.vector[:3] / 0.2 == pytest.approx(np.round(found.best.vector[:3] / 0.2))
