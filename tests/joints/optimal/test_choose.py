@@ -13,12 +13,16 @@ from profiletool.bending.constant_curvature import FormulaModel
 from profiletool.bending.model import Chain, centers_of
 from profiletool.errors import NoObject
 from profiletool.joints.bounds import cuts_of, limits_of
+from profiletool.joints.closest import closest_points, target_points
+from profiletool.joints.correction.parameters import PosedChain
+from profiletool.joints.expected import Expected, error_sizes
 from profiletool.joints.misfit import misfit
 from profiletool.joints.optimal.bends import tabulate
 from profiletool.joints.optimal.choose import Choice, ChoiceOptions, choose
 from profiletool.joints.optimal.lines import Discretisation
 from profiletool.joints.optimal.search import search
 from profiletool.profile.target import Reach, profile_of_line
+from profiletool.records.built import BuildErrors
 from profiletool.records.frames import Pose
 from profiletool.records.profile import Profile
 from profiletool.records.request import TubeSpec
@@ -113,6 +117,24 @@ def test_a_wished_number_of_joints_is_honoured(count: int) -> None:
     assert len(choice.chain.openF) == count
     assert choice.trade_off.rms_mm.shape[1] == count
     assert choice.trade_off.polished_mm[count - 1] == pytest.approx(choice.misfit.rms_mm)
+
+
+def test_for_builds_that_are_off_joints_are_taken_that_errors_move_less() -> None:
+    sizes = error_sizes(BuildErrors(), SPEC)
+    assert sizes is not None
+    nominal = choose(BOWL, MODEL, SPEC)
+    built = choose(BOWL, MODEL, SPEC, ChoiceOptions(sizes=sizes))
+    within_limits(built)
+    points = target_points(BOWL)
+
+    def errors_mm(choice: Choice) -> float:
+        posed = PosedChain(choice.chain, choice.pressure, choice.pose)
+        closest = closest_points(choice.shape.facing, points, BOWL.sign)
+        return Expected(MODEL, sizes).rms_mm(posed, choice.shape, closest)
+
+    assert errors_mm(built) < 0.9 * errors_mm(nominal)
+    assert built.misfit.rms_mm <= 0.25
+    assert len(built.chain.openF) <= len(nominal.chain.openF) + 1
 
 
 @pytest.mark.slow
