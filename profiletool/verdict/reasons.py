@@ -16,10 +16,12 @@ from profiletool.records.design import Design
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request, TubeSpec
 from profiletool.verdict.draft import Draft
+from profiletool.verdict.holds import broken
 from profiletool.verdict.missed import Missed, missed
 from profiletool.verdict.notes import SLACK
 
 GOOD_SHARE = 0.01  # of the profile's length: RMS of a shape that is called good
+WORST = 3.0  # times that: the farthest that any place of it may lie off
 _SLACK_MM = 0.05  # that nobody can see
 
 
@@ -27,12 +29,13 @@ def reasons_of(attempt: Draft, misses: Sequence[Missed]) -> tuple[str, ...]:
     """Reasons why an attempt is infeasible; none where it is a design that can be built."""
     request, plan, profile = attempt.request, attempt.plan, attempt.profile
     if plan.rules is None:
-        return not_good(attempt.design, profile, request, misses)
+        return (*not_good(attempt.design, profile, request, misses), *broken(attempt))
     place = placer(request, profile)
-    return shortfalls(
+    short = shortfalls(
         plan.sectors, plan.layout, plan.rules, request.tube, attempt.formula,
         request.joints, place,
     )  # fmt: skip
+    return (*short, *broken(attempt))
 
 
 def shortfalls(
@@ -136,6 +139,13 @@ def not_good(
         reasons.append(
             f"the best shape found lies {fit.rms_mm:.2f} mm RMS and up to {fit.max_mm:.2f} mm off "
             f"the profile, more than {limit:.2f} mm RMS"
+        )
+        reasons += [place.reason for place in places]
+    elif fit.max_mm > WORST * limit:
+        reasons.append(
+            f"the best shape found lies up to {fit.max_mm:.2f} mm off the profile, more than "
+            f"{WORST:g} times the {limit:.2f} mm of its RMS; raise `tolerance_mm`, or leave that "
+            "place out with `start_pct` or `end_pct`"
         )
         reasons += [place.reason for place in places]
     if request.joints is not None and len(design.joints) < request.joints:
