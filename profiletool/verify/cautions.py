@@ -24,8 +24,8 @@ def cautions(found: Verification) -> tuple[str, ...]:
     if overlapping:
         first, deepest = overlapping[0], max(state.overlap_mm for state in overlapping)
         said.append(
-            f"from {first.pressure_bar:.2f} bar on the tube runs into itself, by up to "
-            f"{deepest:.1f} mm: the model knows no contact and lets it"
+            f"the bent tube touches itself from {first.pressure_bar:.2f} bar on, and lies up to "
+            f"{deepest:.1f} mm deep in itself: the model knows no contact and lets it"
         )
     if found.ahead is not None:
         said.append(too_little(found))
