@@ -12,7 +12,7 @@ from profiletool.joints.layout import Layout
 from profiletool.joints.optimal.choose import TOLERANCE_MM
 from profiletool.joints.paper.pieces import Rules
 from profiletool.joints.paper.sectors import BendingSector
-from profiletool.records.design import Design
+from profiletool.records.design import Design, Misfit
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request, TubeSpec
 from profiletool.verdict.draft import Draft
@@ -29,7 +29,8 @@ def reasons_of(attempt: Draft, misses: Sequence[Missed]) -> tuple[str, ...]:
     """Reasons why an attempt is infeasible; none where it is a design that can be built."""
     request, plan, profile = attempt.request, attempt.plan, attempt.profile
     if plan.rules is None:
-        return (*not_good(attempt.design, profile, request, misses), *broken(attempt))
+        poor = not_good(attempt.design, profile, request, misses)
+        return (*(poor or far_off(attempt.design, profile, request, misses)), *broken(attempt))
     place = placer(request, profile)
     short = shortfalls(
         plan.sectors, plan.layout, plan.rules, request.tube, attempt.formula,
@@ -132,20 +133,12 @@ def not_good(
     design: Design, profile: Profile, request: Request, places: Sequence[Missed]
 ) -> tuple[str, ...]:
     """Give reasons why an optimal plan is no design; none where it is good enough."""
-    fit = design.fit.fe or design.fit.response or design.fit.formula
-    limit = request.tolerance_mm or GOOD_SHARE * profile.length_mm
+    fit, limit = _judged(design, profile, request)
     reasons = []
     if fit.rms_mm > limit:
         reasons.append(
             f"the best shape found lies {fit.rms_mm:.2f} mm RMS and up to {fit.max_mm:.2f} mm off "
             f"the profile, more than {limit:.2f} mm RMS"
-        )
-        reasons += [place.reason for place in places]
-    elif fit.max_mm > WORST * limit:
-        reasons.append(
-            f"the best shape found lies up to {fit.max_mm:.2f} mm off the profile, more than "
-            f"{WORST:g} times the {limit:.2f} mm of its RMS; raise `tolerance_mm`, or leave that "
-            "place out with `start_pct` or `end_pct`"
         )
         reasons += [place.reason for place in places]
     if request.joints is not None and len(design.joints) < request.joints:
@@ -160,3 +153,24 @@ def not_good(
             "shorten the stretch (`start_pct`, `end_pct`), or raise `max_length_mm`"
         )
     return tuple(reasons)
+
+
+def far_off(
+    design: Design, profile: Profile, request: Request, places: Sequence[Missed]
+) -> tuple[str, ...]:
+    """Give reasons why an optimal plan that is good on the whole is not so at its worst place."""
+    fit, limit = _judged(design, profile, request)
+    if fit.max_mm <= WORST * limit:
+        return ()
+    said = (
+        f"the best shape found lies up to {fit.max_mm:.2f} mm off the profile, more than "
+        f"{WORST:g} times the {limit:.2f} mm of its RMS; raise `tolerance_mm`, or leave that place "
+        "out with `start_pct` or `end_pct`"
+    )
+    return (said, *(place.reason for place in places))
+
+
+def _judged(design: Design, profile: Profile, request: Request) -> tuple[Misfit, float]:
+    """Give the misfit by the best model that was run, and the RMS of one that is good, mm."""
+    fit = design.fit.fe or design.fit.response or design.fit.formula
+    return fit, request.tolerance_mm or GOOD_SHARE * profile.length_mm

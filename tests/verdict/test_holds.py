@@ -13,7 +13,7 @@ from profiletool.records.design import Design
 from profiletool.records.fe import CriticalPoint, FeState, Verification
 from profiletool.records.request import Request
 from profiletool.verdict.holds import broken, holding, off_steps
-from profiletool.verdict.reasons import WORST, not_good
+from profiletool.verdict.reasons import WORST, far_off, not_good
 from profiletool.verify.check import Check
 from profiletool.verify.run import Run
 
@@ -123,7 +123,8 @@ def test_a_place_too_far_off(result: Result) -> None:
         fit = result.design.fit
         off = replace(fit.response or fit.formula, rms_mm=0.4, max_mm=most)
         design = replace(result.design, fit=replace(fit, response=off))
-        return not_good(design, profile, request, ())
+        assert not_good(design, profile, request, ()) == ()
+        return far_off(design, profile, request, ())
 
     assert judged(0.99 * WORST * 0.5) == ()
     (reason,) = judged(1.01 * WORST * 0.5)
