@@ -79,16 +79,15 @@ def overlap(rings: FloatArray) -> float:
     """
     tube = np.concatenate([_cap(rings[0]), rings, _cap(rings[-1])[::-1]])
     close = np.triu(~_apart(tube, rings), 2)
-    pairs = np.argwhere(close)
-    crossing = pairs[_cross(tube, pairs)]
-    if len(crossing) == 0:
+    if not close.any():
         return 0.0
     from scipy.ndimage import label  # slow to load, and seldom needed
 
-    # Where slabs cross, and beside: elsewhere they are only close.
-    places, _ = label(close, np.ones((3, 3)))
-    there = np.isin(places, places[tuple(crossing.T)]) & close
-    return max(_depth(tube, np.argwhere(there)), _LEAST)
+    places, count = label(close, np.ones((3, 3)))
+    found = (np.argwhere(places == place) for place in range(1, count + 1))
+    # Only slabs beside others that cross: elsewhere they are close, and no more.
+    crossing = [pairs for pairs in found if _cross(tube, pairs)]
+    return max(_depth(tube, np.concatenate(crossing)), _LEAST) if crossing else 0.0
 
 
 def _cap(ring: FloatArray) -> FloatArray:
@@ -130,9 +129,8 @@ def _triangles(tube: FloatArray, slabs: IntArray) -> FloatArray:
     return np.concatenate([np.stack([a, c, b], axis=2), np.stack([d, b, c], axis=2)], axis=1)
 
 
-def _cross(tube: FloatArray, pairs: IntArray) -> NDArray[np.bool_]:
-    """Whether the triangles of pairs of slabs (P, 2) intersect: (P,)."""
-    crossing = np.zeros(len(pairs), dtype=bool)
+def _cross(tube: FloatArray, pairs: IntArray) -> bool:
+    """Whether the triangles of any pair of slabs (P, 2) intersect."""
     for start in range(0, len(pairs), _BATCH):
         one, other = (_triangles(tube, pairs[start : start + _BATCH, k]) for k in (0, 1))
         near = np.ones((len(one), one.shape[1], other.shape[1]), dtype=bool)
@@ -142,8 +140,9 @@ def _cross(tube: FloatArray, pairs: IntArray) -> NDArray[np.bool_]:
             near &= b.min(axis=2)[:, None] <= a.max(axis=2)[:, :, None]
         p, i, j = np.nonzero(near)
         first, second = one[p, i], other[p, j]
-        crossing[start + p[_pierce(first, second) | _pierce(second, first)]] = True
-    return crossing
+        if (_pierce(first, second) | _pierce(second, first)).any():
+            return True
+    return False
 
 
 def _pierce(edges: FloatArray, faces: FloatArray) -> NDArray[np.bool_]:
