@@ -32,8 +32,8 @@ def random_tube(seed):
     radius = rng.uniform(4.0, 12.0)
     arcs = []
     for _ in range(rng.integers(3, 6)):
-        length = rng.uniform(3.0, 7.0) * radius
-        turn = min(rng.uniform(0.5, 1.0) * length / (1.4 * radius), 3.5)
+        length = rng.uniform(4.0, 9.0) * radius
+        turn = min(rng.uniform(0.6, 1.0) * length / (1.8 * radius), 4.0)
         axis = rng.uniform(0.0, 2.0 * np.pi) if seed % 2 else rng.choice([0.0, 0.0, np.pi])
         arcs.append(Arc(length, turn, axis))
     return tuple(arcs), radius, rng
@@ -47,27 +47,27 @@ def check(arcs, radius):
 
 
 def check_random(seed):
-    """Check a random tube, then one just thick enough to touch, or not quite."""
+    """Check a random tube, then thicker ones until it touches, or does not quite."""
     arcs, radius, rng = random_tube(seed)
-    truth = check(arcs, radius)
     tightest = min(arc.length / abs(arc.turn) for arc in arcs)
-    if truth < 0.0 and radius - 0.5 * truth < 0.9 * tightest:
-        nearly = radius - 0.5 * truth + rng.choice([-0.2, 0.2])
-        return [truth, check(arcs, nearly)]
-    return [truth]
+    found = [check(arcs, radius)]
+    while found[-1] < -0.5 and len(found) < 5:
+        radius += -0.5 * found[-1] + rng.choice([-0.1, 0.1])
+        if radius > 0.95 * tightest:
+            break
+        found.append(check(arcs, radius))
+    return found
 
 
 def test_random_tubes():
-    assert {truth > 0.0 for seed in (2, 15, 22) for truth in check_random(seed)} == {
-        True,
-        False,
-    }
+    found = [truth for seed in (1, 9) for truth in check_random(seed)]
+    assert min(found) < -SURE_MM < SURE_MM < max(found)
 
 
 @pytest.mark.slow
 def test_forty_random_tubes_and_their_nearest_misses():
     found = [truth for seed in range(40) for truth in check_random(seed)]
-    assert sum(truth > SURE_MM for truth in found) > 10
+    assert sum(truth > SURE_MM for truth in found) > 20
     assert sum(truth < -SURE_MM for truth in found) > 20
     assert sum(SURE_MM < abs(truth) < 0.5 for truth in found) > 5
 
