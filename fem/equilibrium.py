@@ -47,13 +47,14 @@ class Critical:
 
     Attributes
     ----------
-    kind : {"limit point", "bifurcation"}
+    kind : {"limit point", "bifurcation", "no equilibrium"}
         Beyond a limit point there is no equilibrium nearby at a higher pressure: the tube
-        balloons. At a bifurcation it buckles into another shape.
+        balloons. At a bifurcation it buckles into another shape. The last is said only ahead of
+        the asked pressures: none was found beyond this one, and no reason is known.
     pressure : float, MPa
     """
 
-    kind: Literal["limit point", "bifurcation"]
+    kind: Literal["limit point", "bifurcation", "no equilibrium"]
     pressure: float
 
 

@@ -46,6 +46,8 @@ class Options:
     beyond : float
         How much further to follow the path by volume past a limit point, as a share of the
         volume there.
+    ahead : float
+        How far beyond the last asked pressure to look for what ends the path, MPa.
     """
 
     tolerance: float = 1e-6
@@ -55,6 +57,7 @@ class Options:
     smallest: float = 2e-3
     stable: bool = True
     beyond: float = 0.0
+    ahead: float = 0.0
 
 
 DEFAULT_OPTIONS = Options()
@@ -80,7 +83,7 @@ class Path:
         self.critical: Critical | None = None
 
     def follow(self, pressures: Sequence[float]) -> Iterator[Equilibrium]:
-        """Yield equilibria through the asked pressures (rising, MPa).
+        """Yield equilibria through the asked pressures (rising, MPa), and a little ahead.
 
         Ends early, with ``critical`` set, where the path loses its stability.
 
@@ -91,11 +94,12 @@ class Path:
         options = self._options
         mu = self._system.mesh.actuator.rubber.shear_modulus
         step, pressure, failed = options.first * mu, 0.0, 0
-        for target in pressures:
+        beyond = [pressures[-1] + options.ahead] if pressures and options.ahead > 0.0 else []
+        for number, target in enumerate([*pressures, *beyond], start=1):
             while pressure < target:
                 count = max(1, int(np.ceil((target - pressure) / step - 1e-6)))
-                asked = count == 1
-                trial = target if asked else pressure + (target - pressure) / count
+                asked = count == 1 and number <= len(pressures)
+                trial = target if count == 1 else pressure + (target - pressure) / count
                 state, first = self._try(trial, None, asked)
                 if state is not None:
                     step = (trial - pressure) * _rate(options.aim / first)

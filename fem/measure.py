@@ -1,4 +1,4 @@
-"""Readings off a deformed actuator: angles, lines, diameters, stretches, threads, contact.
+"""Readings off a deformed actuator: angles, lines, diameters, stretches, threads.
 
 All quantities are those of the whole tube, also where only half of it is modelled.
 """
@@ -17,7 +17,7 @@ from fem.mesh import Mesh
 from fem.meshsize import start_angle
 from fem.sections import best_rotations, rotation_matrix, rotation_vector
 
-_NEAR = 0.02  # of the diameter: surfaces this near touch
+_SAMPLE = 0.5  # of the wall cubed: the most stretched rubber, whose mean counts
 
 
 @dataclass(frozen=True)
@@ -180,19 +180,6 @@ def joint_angles(mesh: Mesh, x: FloatArray, wrapped: tuple[Sector, ...]) -> Floa
     return np.array(angles)
 
 
-def touches(mesh: Mesh, x: FloatArray) -> bool:
-    """Whether the tube's surface meets itself: nodes far apart at rest that lie close now."""
-    from scipy.spatial import cKDTree  # a third of the package's import time
-
-    rest = mesh.X[:, mesh.outer_ring].reshape(-1, 3)
-    now = x[:, mesh.outer_ring].reshape(-1, 3)
-    pairs = cKDTree(now).query_pairs(_NEAR * mesh.actuator.diameter, output_type="ndarray")
-    if len(pairs) == 0:
-        return False
-    apart = np.linalg.norm(rest[pairs[:, 0]] - rest[pairs[:, 1]], axis=1)
-    return bool((apart > mesh.actuator.radius).any())
-
-
 def threads(mesh: Mesh, x: FloatArray) -> ThreadTension:
     """State of the threads."""
     material = mesh.actuator.gauze
@@ -217,14 +204,37 @@ def threads(mesh: Mesh, x: FloatArray) -> ThreadTension:
 
 
 def stretches(mesh: Mesh, x: FloatArray) -> FloatArray:
-    """Largest principal stretch of the rubber at any Gauss point of each layer: (layers,)."""
-    worst, c = np.zeros(mesh.layers), mesh.around
+    """Stretch of the rubber in each wrapped sector and window, in order: (2 joints + 1,).
+
+    The largest principal stretch, in the mean over the most stretched rubber there, as much as
+    `_SAMPLE` of a cube as wide as the wall is thick. Its largest value at any point is none of the
+    tube's: at the corners of a cut it is singular, and grows as bricks get smaller.
+    """
+    lam, volume = _points(mesh, x)
+    sample = _SAMPLE * mesh.actuator.wall**3
+    found = np.ones(2 * len(mesh.actuator.windows) + 1)
+    for segment in range(len(found)):
+        own = mesh.segment == segment
+        values, weights = lam[own].ravel(), volume[own].ravel()
+        order = np.argsort(-values)
+        before = np.cumsum(weights[order]) - weights[order]
+        taken = np.clip(sample - before, 0.0, weights[order])
+        if taken.any():
+            found[segment] = float(taken @ values[order]) / float(taken.sum())
+    return found
+
+
+def _points(mesh: Mesh, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Largest principal stretch and volume at rest, mm^3, of all Gauss points: (layers, q) each."""
+    lam, volume, c = list[FloatArray](), list[FloatArray](), mesh.around
     first = np.arange(mesh.layers) * (mesh.ring + mesh.mid)
     for deep, brick in enumerate(mesh.brick):
         nodes = mesh.bricks[deep * c : (deep + 1) * c, :, None] + first
         gradient = brick.dN @ np.moveaxis(x.reshape(-1, 3)[nodes], 3, 0)
         F = gradient.reshape(3, c, 3, -1, mesh.layers)
         F[:, :, 2] *= 2.0 / mesh.heights
-        C = np.einsum("kciql,kcjql->cqlij", F, F)
-        worst = np.maximum(worst, np.linalg.eigvalsh(C)[..., 2].max(axis=(0, 1)))
-    return np.asarray(np.sqrt(worst))
+        C = np.einsum("kciql,kcjql->lcqij", F, F).reshape(mesh.layers, -1, 3, 3)
+        lam.append(np.sqrt(np.linalg.eigvalsh(C)[..., 2]))
+        weights = brick.weights.ravel() * (2.0 if mesh.half else 1.0)
+        volume.append(weights * 0.5 * mesh.heights[:, None])
+    return np.concatenate(lam, axis=1), np.concatenate(volume, axis=1)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fem import measure
+from fem import measure, touching
 from fem.arrays import FloatArray
 from fem.equilibrium import Critical, Equilibrium
 from fem.errors import Attempt
@@ -32,10 +32,11 @@ class State:
         Unbalanced forces over the pressure's.
     least_J : float
         Smallest determinant of F.
-    stretches : (layers,)
-        Largest principal stretch of the rubber at any Gauss point of each layer.
-    touches : bool
-        Whether the tube's surface meets itself; the model has no contact.
+    stretches : (2 joints + 1,)
+        Of the rubber in each wrapped sector and window, in order; see `fem.measure.stretches`.
+    overlap : float, mm
+        How deep the tube runs into itself, as the model has no contact; 0 where it does not. See
+        `fem.touching.overlap`.
     x : (layers + 1, ring + mid, 3) mm
         Nodal positions of the mesh.
     """
@@ -51,12 +52,17 @@ class State:
     residual: float
     least_J: float
     stretches: FloatArray
-    touches: bool
+    overlap: float
     x: FloatArray
 
     @property
+    def touches(self) -> bool:
+        """Whether the tube runs into itself."""
+        return self.overlap > 0.0
+
+    @property
     def largest_stretch(self) -> float:
-        """Largest principal stretch of the rubber anywhere."""
+        """Largest stretch of the rubber in any sector or window."""
         return float(self.stretches.max())
 
     @property
@@ -85,6 +91,8 @@ class Solution:
     seconds : float
     failure : str or None
         Why no equilibrium was found at an asked pressure, where `NotConverged` carries this.
+    ahead : Critical or None
+        What ends the path beyond the last asked pressure, as far as ``Options.ahead`` looks.
     """
 
     mesh: Mesh
@@ -95,6 +103,7 @@ class Solution:
     factorisations: int
     seconds: float
     failure: str | None = None
+    ahead: Critical | None = None
 
     @property
     def converged(self) -> bool:
@@ -128,6 +137,6 @@ def state_of(mesh: Mesh, equilibrium: Equilibrium, work: float) -> State:
         residual=equilibrium.residual,
         least_J=forces.least_J,
         stretches=measure.stretches(mesh, x),
-        touches=measure.touches(mesh, x),
+        overlap=touching.overlap(touching.outer_rings(mesh, x)),
         x=x,
     )

@@ -10,7 +10,7 @@ import numpy as np
 from fem import blas
 from fem.actuator import Actuator
 from fem.assembly import System
-from fem.equilibrium import Equilibrium, last_work
+from fem.equilibrium import Critical, Equilibrium, last_work
 from fem.errors import NotConverged
 from fem.items import MakeItem
 from fem.loadpath import DEFAULT_OPTIONS, Options, Path
@@ -96,15 +96,21 @@ def _inflate(
                 states.append(state_of(mesh, equilibrium, work))
     except NotConverged as error:
         failure = error
+    critical, beyond = path.critical, None
+    if asked and max(state.pressure for state in states) >= asked[-1]:
+        critical, beyond = None, critical
+        if failure is not None:
+            beyond, failure = Critical("no equilibrium", failure.reached), None
     solution = Solution(
         mesh=mesh,
         states=tuple(states),
-        critical=path.critical,
+        critical=critical,
         history=tuple(path.history),
         newton_iterations=sum(a.iterations for a in path.history),
         factorisations=sum(a.factorisations for a in path.history),
         seconds=time.perf_counter() - begun,
         failure=None if failure is None else str(failure),
+        ahead=beyond,
     )
     if failure is not None:
         raise NotConverged(str(failure), failure.history, failure.reached, solution) from failure

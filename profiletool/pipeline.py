@@ -17,6 +17,7 @@ from profiletool.records.profile import Profile
 from profiletool.records.request import Request
 from profiletool.subject.find import Subject, find_subject
 from profiletool.verdict.draft import Draft, attempt_of
+from profiletool.verdict.holds import holding
 from profiletool.verdict.missed import Missed
 from profiletool.verdict.notes import notes_of
 from profiletool.verdict.reasons import misses_of, reasons_of
@@ -28,7 +29,7 @@ from profiletool.verify.forward import FeForwardModel
 from profiletool.verify.run import Progress
 from profiletool.verify.sensitivity import sensitivity_of
 
-_STABLE_SHARE = 0.97  # of the pressure at which FE loses its stability
+_STABLE_SHARE = 0.94  # of the pressure at which FE loses its stability: 5 % more must stand
 
 
 @dataclass(frozen=True, repr=False)
@@ -120,14 +121,15 @@ def _attempt(
     if not request.verify:
         return attempt
     checked = _verified(attempt.design, profile, say, progress)
-    return replace(attempt, design=checked.design, check=checked)
+    return holding(replace(attempt, design=checked.design, check=checked))
 
 
 def _lower(attempt: Draft) -> Request | None:
     """Ask for less pressure where FE loses its stability below what a refined plan works at."""
     request = attempt.request
     run = None if attempt.check is None else attempt.check.run
-    ended = None if run is None else run.verification.critical
+    found = None if run is None else run.verification
+    ended = None if found is None else found.critical or found.ahead
     if ended is None or request.method != "optimal" or not request.refine:
         return None
     bar = _STABLE_SHARE * ended.pressure_bar

@@ -194,15 +194,17 @@ def _bar(most: float, quiet: bool) -> Iterator[Callable[[float], None]]:
 
 
 def _end(found: Verification) -> None:
-    """Say so where a run ended early.
+    """Say so where a run ended early, or would end a little above the pressure asked for.
 
     Raises
     ------
     NotVerified
     """
-    if not found.converged:
-        from profiletool.verify.run import reason
+    from profiletool.verify.run import reason, too_little
 
+    if found.ahead is not None:
+        raise NotVerified(f"{too_little(found)}; ask for less with --pressure")
+    if not found.converged:
         raise NotVerified(
             f"{reason(found)}, before the {found.asked_bar:.2f} bar asked for; "
             "ask for less with --pressure"

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from formula.rubber import RubberLaw
 from profiletool.errors import UnreadableInput
@@ -12,6 +14,7 @@ from profiletool.records.frames import Pose
 from profiletool.records.side import Side
 
 TOWARD_DEG, AWAY_DEG = 270.0, 90.0  # alpha_center of a joint that bends toward the object, or away
+_NEAR_SHARE = 0.25  # of the diameter: a sector this short between two cuts warps
 _SAME_DEG = 1e-6  # design.json keeps six decimals
 
 
@@ -31,6 +34,32 @@ def sense_of(alpha_center_deg: float, joint: int) -> float:
         f"{alpha_center_deg:g} deg: formula and joint response bend joints toward the object "
         "(270 deg) or away from it (90 deg); others are for finite elements and templates alone"
     )
+
+
+def named(numbers: Iterable[int]) -> str:
+    """Name joints by their numbers: "joint 2", "joints 2, 3 and 5"."""
+    words = [str(number) for number in numbers]
+    if len(words) == 1:
+        return f"joint {words[0]}"
+    return f"joints {', '.join(words[:-1])} and {words[-1]}"
+
+
+def joints_too_near(between_mm: Sequence[float], diameter_mm: float) -> tuple[int, ...]:
+    """Numbers of the joints whose angles are uncertain, as the sector between them warps.
+
+    Cuts less than 5 mm apart on a tube of 20 mm. The angle of each then depends on what is called
+    the rotation of a warped section, by up to 7 %; the shape of the tube does not.
+
+    Parameters
+    ----------
+    between_mm : (joints - 1,)
+        Wrapped lengths from cut to cut.
+    diameter_mm : float
+        Outer diameter of the tube.
+    """
+    least = _NEAR_SHARE * diameter_mm - 1e-6
+    near = (k for k, between in enumerate(between_mm, start=1) if between < least)
+    return tuple(sorted({number for k in near for number in (k, k + 1)}))
 
 
 @dataclass(frozen=True)
@@ -225,3 +254,12 @@ class Design:
     built: Built | None = None
     operate_bar: float | None = None
     trim: tuple[TrimPoint, ...] = ()
+
+    @property
+    def theta_uncertain(self) -> tuple[int, ...]:
+        """Numbers of the joints that are too near to each other for an angle each."""
+        between = [
+            b.centre_mm - a.centre_mm - 0.5 * (a.openF_mm + b.openF_mm)
+            for a, b in pairwise(self.joints)
+        ]
+        return joints_too_near(between, self.tube.outer_diameter_mm)

@@ -10,7 +10,11 @@ from profiletool.records.units import FloatArray
 
 @dataclass(frozen=True)
 class CriticalPoint:
-    """Where the path of equilibria ends: ``kind`` is "limit point" or "bifurcation"."""
+    """Where the path of equilibria ends.
+
+    ``kind`` is "limit point" or "bifurcation", or "no equilibrium" where none was found beyond
+    this pressure and no reason is known.
+    """
 
     kind: str
     pressure_bar: float
@@ -31,9 +35,10 @@ class FeState:
     air_ml : float
         Volume gained since rest, at the tube's own pressure.
     joint_stretch : tuple of float
-        Largest principal stretch of the rubber at every joint.
+        Stretch of the rubber at every joint, in the mean over the most stretched piece of it; see
+        `fem.measure.stretches`.
     largest_stretch, least_J : float
-        Of the rubber: largest principal stretch, smallest change of volume.
+        Of the rubber: the same anywhere, and the smallest change of volume.
     slack_share : float
         Of the wrapped surface: where axial threads are slack.
     thread_N : float
@@ -41,7 +46,11 @@ class FeState:
     residual, energy_error : float
         Unbalanced forces over the pressure's; stored energy off the pressure's work, over it.
     touches : bool
-        Whether the tube's surface meets itself; the model has no contact.
+        Whether the tube runs into itself; the model has no contact.
+    overlap_mm : float
+        How deep.
+    joint_bulge : tuple of float
+        By how much the surface stands out at every joint, over the tube's radius.
     """
 
     pressure_bar: float
@@ -57,6 +66,8 @@ class FeState:
     residual: float
     energy_error: float
     touches: bool
+    overlap_mm: float = 0.0
+    joint_bulge: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -76,6 +87,10 @@ class Verification:
     seconds : float
     failure : str or None
         Why no state was found beyond those, where no critical point ended the path.
+    ahead : CriticalPoint or None
+        What ends the path beyond the pressure asked for, as far as the run looked.
+    theta_uncertain : tuple of int
+        Numbers of the joints that are too near to each other for an angle each.
     """
 
     rest: FeState
@@ -88,6 +103,8 @@ class Verification:
     newton_iterations: int
     seconds: float
     failure: str | None = None
+    ahead: CriticalPoint | None = None
+    theta_uncertain: tuple[int, ...] = ()
 
     @property
     def converged(self) -> bool:

@@ -10,6 +10,7 @@ import numpy as np
 
 from profiletool.records.design import Design, Misfit
 from profiletool.records.fe import Verification
+from profiletool.verify.cautions import cautions
 
 _ANGLE_DECIMALS = 4  # deg: the mesh is good to a hundredth
 _SIGNIFICANT = 4
@@ -32,10 +33,16 @@ def fe_json(found: Verification, more: Mapping[str, Any] | None = None) -> str:
         "critical": None
         if ended is None
         else {"kind": ended.kind, "pressure_bar": round(ended.pressure_bar, 4)},
+        "ahead": None
+        if found.ahead is None
+        else {"kind": found.ahead.kind, "pressure_bar": round(found.ahead.pressure_bar, 4)},
         "energy_error": _short(max((s.energy_error for s in states), default=0.0)),
         "residual": _short(max((s.residual for s in states), default=0.0)),
         "least_J": round(min((s.least_J for s in states), default=1.0), 4),
         "touches": any(s.touches for s in states),
+        "overlap_mm": round(max((s.overlap_mm for s in states), default=0.0), 2),
+        "theta_uncertain": list(found.theta_uncertain),
+        "warnings": list(cautions(found)),
         "air_ml": [round(s.air_ml, 3) for s in states],
         "largest_stretch": round(found.last.largest_stretch, 3),
         "thread_N": round(found.last.thread_N, 2),
@@ -60,7 +67,7 @@ def fe_text(found: Verification) -> str:
     joints = range(1, len(found.rest.theta_deg) + 1)
     lines = [
         "theta of each joint in deg, positive toward the object; air beyond that at rest in ml",
-        "   bar" + "".join(f"{f'theta{k}':>8}" for k in joints) + "     air",
+        "   bar" + "".join(f"{_head(k, found):>8}" for k in joints) + "     air",
     ]
     for state in found.states:
         cells = "".join(f"{theta:8.1f}" for theta in state.theta_deg)
@@ -70,13 +77,17 @@ def fe_text(found: Verification) -> str:
         f"at {last.pressure_bar:.2f} bar: rubber stretched {last.largest_stretch:.2f} times at "
         f"most, {last.thread_N:.1f} N in a thread at most"
     )
-    if last.touches:
-        lines.append("the bent tube touches itself; the model lets it pass through")
+    lines += [f"note: {text}" for text in cautions(found)]
     lines.append(
         f"{found.elements} elements, {found.nodes} nodes, {found.dofs} unknowns, "
         f"{found.newton_iterations} Newton iterations, {found.seconds:.1f} s"
     )
     return "\n".join(lines) + "\n"
+
+
+def _head(joint: int, found: Verification) -> str:
+    """Head of a joint's column, marked where its angle is uncertain."""
+    return f"{'~' if joint in found.theta_uncertain else ''}theta{joint}"
 
 
 def compared_text(

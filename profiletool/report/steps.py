@@ -7,14 +7,13 @@ from dataclasses import dataclass
 from math import pi
 
 from profiletool.joints.windows import off_mesh, seam_at
-from profiletool.records.design import Design
+from profiletool.records.design import Design, named
 from profiletool.records.fe import Verification
 from profiletool.records.rubber import constants_text
 from profiletool.report.markup import Markup, joined, pairs, signed, tag
 from profiletool.report.tables import pressure_table, slit_table
 from profiletool.template.labels import short, times
 from profiletool.template.unroll import sheet_size
-from profiletool.verdict.notes import named
 
 _CAP_MM = 4.0  # rubber beyond the core's end, which closes the tube (the paper's)
 _GRIP_MM = 30.0  # of tube that plug and belt take (the paper's: 33 mm)

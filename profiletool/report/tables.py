@@ -73,7 +73,11 @@ def slit_table(design: Design) -> Markup:
 
 def pressure_table(design: Design, found: Verification) -> Markup:
     """Tabulate the angles to expect at the pressures of finite elements."""
-    heads = ("P (bar)", *(f"θ{joint.number} (°)" for joint in design.joints), "air (ml)")
+    heads = (
+        "P (bar)",
+        *(f"{_mark(joint, design)}θ{joint.number} (°)" for joint in design.joints),
+        "air (ml)",
+    )
     rows = [
         (
             f"{state.pressure_bar:.2f}",
@@ -96,7 +100,10 @@ def loads(state: FeState, design: Design) -> Markup:
         ("Rubber, least volume ratio J", f"{state.least_J:.3f}"),
         ("Thread, largest force", f"{state.thread_N:.1f} N"),
         ("Gauze, slack axial threads", f"{100.0 * state.slack_share:.0f} % of the wrapped surface"),
-        ("Tube, touches itself", "yes; the model lets it" if state.touches else "no"),
+        (
+            "Tube, runs into itself",
+            f"by {state.overlap_mm:.1f} mm; the model lets it" if state.touches else "no",
+        ),
     ]
     return pairs(rows)
 
@@ -182,13 +189,20 @@ def _joint_row(joint: Joint, design: Design, place: float) -> tuple[str, ...]:
                 joint.theta_target_deg,
                 joint.theta_formula_deg,
                 joint.theta_response_deg,
-                joint.theta_fe_deg,
             )
         ),
+        _NOTHING
+        if joint.theta_fe_deg is None
+        else f"{_mark(joint, design)}{signed(joint.signed(joint.theta_fe_deg))}",
         _NOTHING if joint.stretch_fe is None else f"{joint.stretch_fe:.2f}",
         f"{joint.centre_mm:.1f}",
         f"{place:.1f}",
     )
+
+
+def _mark(joint: Joint, design: Design) -> str:
+    """Mark an angle by FE that is uncertain, as the joint is near to another."""
+    return "~" if joint.number in design.theta_uncertain else ""
 
 
 def _mesh(found: Verification | None) -> str:

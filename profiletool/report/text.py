@@ -6,8 +6,7 @@ import json
 from collections.abc import Iterator, Sequence
 
 from formula.table import Assignment, Table
-from profiletool.records.design import Source
-from profiletool.verdict.notes import named
+from profiletool.records.design import Source, named
 
 EXTRAPOLATED = "beyond what the formula was fitted on: extrapolated"
 _COLUMNS = ("pressure_bar", "openF_mm", "alpha_closed_deg", "theta_deg")

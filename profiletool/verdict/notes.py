@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from formula.theta import Formula, beyond
-from profiletool.bending.kinematics import meets_itself
 from profiletool.joints.layout import Layout
 from profiletool.joints.misfit import depth_inside
 from profiletool.joints.paper.assign import NEAR_DEG
 from profiletool.joints.paper.sectors import BendingSector
 from profiletool.joints.paper_method import PAPER_TOLERANCE_MM
 from profiletool.joints.windows import best_seam, off_mesh
-from profiletool.records.design import Design, Gauze, Joint, Misfit
+from profiletool.records.design import Design, Gauze, Joint, Misfit, named
 from profiletool.records.fe import FeState
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
@@ -22,10 +21,10 @@ from profiletool.records.request import TubeSpec
 from profiletool.subject.find import drawing_notes
 from profiletool.verdict.draft import Draft
 from profiletool.verdict.missed import Missed
+from profiletool.verify.cautions import BREAKS, strained, uncertain
 from profiletool.verify.check import Check
 
 _FORMULA_LOW_ABOVE_BAR = 1.2
-_BREAKS = 9.5  # stretch of silicone at break: 850 % of strain
 _SLACK_SHARE = 0.1
 _BULGES_ABOVE_BAR = 2.0
 SLACK = 0.05  # mm or deg that nobody can see
@@ -148,8 +147,6 @@ def shape_warnings(shape: Shape, profile: Profile, depth_mm: float) -> Iterator[
     depth = depth_inside(shape, profile)
     if depth > depth_mm:
         yield f"the tube would press up to {depth:.1f} mm into the object"
-    if meets_itself(shape):
-        yield "the bent tube runs into itself"
 
 
 def wear(state: FeState, design: Design) -> Iterator[str]:
@@ -157,8 +154,9 @@ def wear(state: FeState, design: Design) -> Iterator[str]:
     worst = max(design.joints, key=lambda joint: joint.stretch_fe or 0.0)
     yield (
         f"the rubber is stretched most at joint {worst.number}: {worst.stretch_fe:.1f} times "
-        f"(silicone breaks at {_BREAKS:g} times)"
+        f"(silicone breaks at {BREAKS:g} times)"
     )
+    yield from strained(state)
     if state.slack_share > _SLACK_SHARE:
         yield (
             f"axial threads are slack on {100.0 * state.slack_share:.0f} % of the wrapped surface: "
@@ -166,16 +164,6 @@ def wear(state: FeState, design: Design) -> Iterator[str]:
         )
     if design.pressure_bar > _BULGES_ABOVE_BAR:
         yield f"bulges were seen above {_BULGES_ABOVE_BAR:.1f} bar on the paper's actuators"
-    if state.touches:
-        yield "by FE the bent tube touches itself; the model lets it pass through"
-
-
-def named(numbers: Iterable[int]) -> str:
-    """Name joints by their numbers: "joint 2", "joints 2, 3 and 5"."""
-    words = [str(number) for number in numbers]
-    if len(words) == 1:
-        return f"joint {words[0]}"
-    return f"joints {', '.join(words[:-1])} and {words[-1]}"
 
 
 def _method_notes(attempt: Draft) -> Iterator[str]:
@@ -201,6 +189,7 @@ def _fe_notes(checked: Check | None) -> Iterator[str]:
         yield f"NOT VERIFIED: finite elements: {checked.failure}"
     elif checked.run is not None:
         yield from wear(checked.run.verification.last, checked.design)
+        yield from uncertain(checked.design.theta_uncertain)
 
 
 def _gauze_notes(layout: Layout, gauze: Gauze) -> Iterator[str]:

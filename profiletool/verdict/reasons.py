@@ -12,14 +12,16 @@ from profiletool.joints.layout import Layout
 from profiletool.joints.optimal.choose import TOLERANCE_MM
 from profiletool.joints.paper.pieces import Rules
 from profiletool.joints.paper.sectors import BendingSector
-from profiletool.records.design import Design
+from profiletool.records.design import Design, Misfit
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request, TubeSpec
 from profiletool.verdict.draft import Draft
+from profiletool.verdict.holds import broken
 from profiletool.verdict.missed import Missed, missed
 from profiletool.verdict.notes import SLACK
 
 GOOD_SHARE = 0.01  # of the profile's length: RMS of a shape that is called good
+WORST = 3.0  # times that: the farthest that any place of it may lie off
 _SLACK_MM = 0.05  # that nobody can see
 
 
@@ -27,12 +29,14 @@ def reasons_of(attempt: Draft, misses: Sequence[Missed]) -> tuple[str, ...]:
     """Reasons why an attempt is infeasible; none where it is a design that can be built."""
     request, plan, profile = attempt.request, attempt.plan, attempt.profile
     if plan.rules is None:
-        return not_good(attempt.design, profile, request, misses)
+        poor = not_good(attempt.design, profile, request, misses)
+        return (*(poor or far_off(attempt.design, profile, request, misses)), *broken(attempt))
     place = placer(request, profile)
-    return shortfalls(
+    short = shortfalls(
         plan.sectors, plan.layout, plan.rules, request.tube, attempt.formula,
         request.joints, place,
     )  # fmt: skip
+    return (*short, *broken(attempt))
 
 
 def shortfalls(
@@ -129,8 +133,7 @@ def not_good(
     design: Design, profile: Profile, request: Request, places: Sequence[Missed]
 ) -> tuple[str, ...]:
     """Give reasons why an optimal plan is no design; none where it is good enough."""
-    fit = design.fit.fe or design.fit.response or design.fit.formula
-    limit = request.tolerance_mm or GOOD_SHARE * profile.length_mm
+    fit, limit = _judged(design, profile, request)
     reasons = []
     if fit.rms_mm > limit:
         reasons.append(
@@ -150,3 +153,24 @@ def not_good(
             "shorten the stretch (`start_pct`, `end_pct`), or raise `max_length_mm`"
         )
     return tuple(reasons)
+
+
+def far_off(
+    design: Design, profile: Profile, request: Request, places: Sequence[Missed]
+) -> tuple[str, ...]:
+    """Give reasons why an optimal plan that is good on the whole is not so at its worst place."""
+    fit, limit = _judged(design, profile, request)
+    if fit.max_mm <= WORST * limit:
+        return ()
+    said = (
+        f"the best shape found lies up to {fit.max_mm:.2f} mm off the profile, more than "
+        f"{WORST:g} times the {limit:.2f} mm of its RMS; raise `tolerance_mm`, or leave that place "
+        "out with `start_pct` or `end_pct`"
+    )
+    return (said, *(place.reason for place in places))
+
+
+def _judged(design: Design, profile: Profile, request: Request) -> tuple[Misfit, float]:
+    """Give the misfit by the best model that was run, and the RMS of one that is good, mm."""
+    fit = design.fit.fe or design.fit.response or design.fit.formula
+    return fit, request.tolerance_mm or GOOD_SHARE * profile.length_mm

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from profiletool.records.built import Built
-from profiletool.records.design import Design, Misfit
+from profiletool.records.design import Design, Joint, Misfit
 
 
 def joint_table(design: Design) -> str:
@@ -22,7 +22,7 @@ def joint_table(design: Design) -> str:
     lines += [
         f"{j.number:5d}  {j.F_mm:6.1f}  {j.openF_mm:8g}  {j.alpha_closed_deg:16.4g}  "
         f"{j.alpha_center_deg:16g}  {j.theta_target_deg:9.1f}"
-        + "".join(f"  {getattr(j, name):{len(head)}.1f}" for head, name in extra)
+        + "".join(f"  {_angle(design, j, name):>{len(head)}}" for head, name in extra)
         for j in design.joints
     ]
     lines.append(f"by the formula off the profile:        {off_text(design.fit.formula)}")
@@ -33,6 +33,12 @@ def joint_table(design: Design) -> str:
     if design.built is not None:
         lines.append(f"built by hand, off the profile:        {built_text(design.built)}")
     return "\n".join(lines) + "\n"
+
+
+def _angle(design: Design, joint: Joint, name: str) -> str:
+    """Give an angle of a joint, marked where finite elements cannot tell it for certain."""
+    doubtful = name == "theta_fe_deg" and joint.number in design.theta_uncertain
+    return f"{'~' if doubtful else ''}{getattr(joint, name):.1f}"
 
 
 def off_text(misfit: Misfit) -> str:

@@ -9,7 +9,7 @@ from profiletool.joints.misfit import misfit_to
 from profiletool.records.design import Design
 from profiletool.records.frames import Shape
 from profiletool.records.units import FloatArray
-from profiletool.verify.run import Progress, Run, reason, run_design, shortly
+from profiletool.verify.run import Progress, Run, reason, run_design, shortly, too_little
 
 DECIMALS = 4  # of what FE puts into design.json: far above the noise of the last bits
 
@@ -21,7 +21,7 @@ class Check:
     Attributes
     ----------
     design : Design
-        Verified where the run reached the operating pressure.
+        Verified where the run reached the operating pressure, and stands a little more.
     run : Run or None
         None where there is not even a part of it.
     failure : str or None
@@ -53,6 +53,8 @@ def check(design: Design, target: FloatArray, progress: Progress | None = None) 
     found = run.verification
     if found.critical is not None or found.failure is not None:
         return Check(design, run, reason(found))
+    if found.ahead is not None:
+        return Check(design, run, too_little(found))
     by_joint = zip(design.joints, found.last.theta_deg, found.last.joint_stretch, strict=True)
     joints = tuple(
         replace(

@@ -10,10 +10,11 @@ import numpy as np
 from fem.actuator import Actuator
 from fem.equilibrium import Critical
 from fem.errors import NotConverged
+from fem.loadpath import Options
 from fem.mesh import Mesh
 from fem.solution import Solution, State
 from fem.solver import solve
-from profiletool.records.design import Design
+from profiletool.records.design import Design, joints_too_near
 from profiletool.records.fe import CriticalPoint, FeState, Verification
 from profiletool.records.frames import Pose
 from profiletool.records.side import side_sign
@@ -21,6 +22,7 @@ from profiletool.records.units import BAR_PER_MPA, FloatArray
 from profiletool.verify.lines import Placement, placed_shape
 from profiletool.verify.tube import actuator_of
 
+MARGIN = 0.05  # of the operating pressure, by which a tube must stand more
 STEPS = 10  # pressures that are reported where nothing else is asked for
 LYING = Pose(0.0, 0.0, 0.0)  # an actuator without an object lies along x ...
 DOWN = -1.0  # ... and bends down
@@ -52,6 +54,7 @@ def inflate(
     thread_pitch_mm: float = 1.0,
     threads: int = 2,
     progress: Progress | None = None,
+    margin: float = 0.0,
 ) -> Run:
     """Run finite elements from rest through the given pressures.
 
@@ -69,6 +72,8 @@ def inflate(
         Of the computer, not of the gauze.
     progress : callable, optional
         Takes the pressure reached so far, bar.
+    margin : float
+        Share of the last pressure by which to look beyond it for what ends the path.
 
     Returns
     -------
@@ -80,22 +85,24 @@ def inflate(
     fem.errors.NotConverged
         When no equilibrium is found at the first pressure.
     """
+    most = max(pressures_bar)
 
     def told(pressure: float) -> None:
         if progress is not None:
-            progress(BAR_PER_MPA * pressure)
+            progress(min(BAR_PER_MPA * pressure, most))
 
     asked = [p / BAR_PER_MPA for p in pressures_bar]
+    options = Options(ahead=margin * most / BAR_PER_MPA)
     failure = None
     try:
-        solution = solve(actuator, asked, threads=threads, progress=told)
+        solution = solve(actuator, asked, options=options, threads=threads, progress=told)
     except NotConverged as error:
         part = error.solution
         if not isinstance(part, Solution) or len(part.states) < 2:
             raise
         solution, failure = part, shortly(error)
     place = Placement(pose, sign, actuator.radius)
-    found = _verification(solution, max(pressures_bar), place, thread_pitch_mm)
+    found = _verification(solution, most, place, thread_pitch_mm)
     return Run(replace(found, failure=failure), solution)
 
 
@@ -115,6 +122,10 @@ def _verification(
         states=tuple(loaded),
         asked_bar=asked_bar,
         critical=None if found.critical is None else ended(found.critical),
+        ahead=None if found.ahead is None else ended(found.ahead),
+        theta_uncertain=joints_too_near(
+            [end - start for start, end in mesh.actuator.wrapped[1:-1]], mesh.actuator.diameter
+        ),
         elements=mesh.elements,
         nodes=mesh.nodes,
         dofs=_dofs(mesh),
@@ -125,6 +136,8 @@ def _verification(
 
 def run_design(design: Design, pressure_bar: float, progress: Progress | None = None) -> Run:
     """Run a design up to a pressure, in its own base pose.
+
+    At its operating pressure it looks `MARGIN` further, for what ends the path there.
 
     Raises
     ------
@@ -137,6 +150,7 @@ def run_design(design: Design, pressure_bar: float, progress: Progress | None = 
         side_sign(design.source.side),
         thread_pitch_mm=design.gauze.pitch_mm / design.gauze.turns,
         progress=progress,
+        margin=MARGIN if abs(pressure_bar - design.pressure_bar) < 1e-6 else 0.0,
     )
 
 
@@ -157,13 +171,29 @@ def reason(found: Verification) -> str:
 
 def said(critical: CriticalPoint) -> str:
     """Say what ended a run."""
-    return f"{critical.kind} at {critical.pressure_bar:.2f} bar"
+    where = "beyond" if critical.kind == "no equilibrium" else "at"
+    return f"{critical.kind} {where} {critical.pressure_bar:.2f} bar"
+
+
+def too_little(found: Verification) -> str:
+    """Say what ends the path too soon beyond the pressure asked for; empty where nothing does."""
+    if found.ahead is None:
+        return ""
+    return f"{said(found.ahead)}, less than {100.0 * MARGIN:g} % above {found.asked_bar:.2f} bar"
 
 
 def _dofs(mesh: Mesh) -> int:
     """Count the unknowns: free nodes between the clamped ring and the plug, and the plug's own."""
     ring, mid = (int((~held).sum()) for held in (mesh.fixed_ring, mesh.fixed_mid))
     return (mesh.layers - 1) * ring + mesh.layers * mid + (3 if mesh.half else 6)
+
+
+def _bulges(found: Solution, state: State) -> tuple[float, ...]:
+    """Largest bulge in every window, over the radius."""
+    actuator, shape = found.mesh.actuator, state.shape
+    bulge = shape.bulge / actuator.radius
+    inside = ((shape.z >= w.start) & (shape.z <= w.end) for w in actuator.windows)
+    return tuple(float(bulge[own].max(initial=0.0)) for own in inside)
 
 
 def _state(
@@ -175,10 +205,7 @@ def _state(
         shape=placed_shape(found.mesh, state, place),
         phalanges=place(np.array([sector.centre for sector in state.sectors])),
         air_ml=1e-3 * (state.volume - found.states[0].volume),
-        joint_stretch=tuple(
-            float(state.stretches[found.mesh.segment == 2 * k + 1].max(initial=1.0))
-            for k in range(len(theta_deg))
-        ),
+        joint_stretch=tuple(float(stretch) for stretch in state.stretches[1::2]),
         largest_stretch=state.largest_stretch,
         slack_share=state.threads.slack_share,
         least_J=state.least_J,
@@ -186,4 +213,6 @@ def _state(
         residual=state.residual,
         energy_error=state.energy_error,
         touches=state.touches,
+        overlap_mm=state.overlap,
+        joint_bulge=_bulges(found, state),
     )

@@ -5,11 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from fem.touching import overlap
 from profiletool.bending.kinematics import PIVOT_SHARE, Bend, deform, facing_stretch, meets_itself
 from profiletool.joints.misfit import depth_inside, misfit
+from profiletool.profile.curve import points_at
 from profiletool.profile.target import Reach, profile_of_object
 from profiletool.records.frames import Pose
 
@@ -137,3 +139,21 @@ def test_a_tube_that_curls_up_meets_itself() -> None:
     curl = [Bend(20.0 + 24.0 * k, 10.0, np.radians(50.0)) for k in range(9)]
     assert meets_itself(deform(curl, 240.0, 10.0, ORIGIN, 1.0))
     assert not meets_itself(deform(curl[:3], 240.0, 10.0, ORIGIN, 1.0))
+
+
+@settings(max_examples=12, deadline=None)
+@given(st.lists(st.tuples(st.floats(16.0, 40.0), st.floats(0.3, 1.5)), min_size=4, max_size=9))
+def test_a_tube_meets_itself_where_its_surface_in_space_does(
+    rows: list[tuple[float, float]],
+) -> None:
+    centres = np.cumsum([row[0] for row in rows])
+    bends = [Bend(float(at), 10.0, turn) for at, (_, turn) in zip(centres, rows, strict=True)]
+    shape = deform(bends, float(centres[-1]) + 30.0, 10.0, ORIGIN, 1.0)
+    along = np.linspace(0.0, shape.along[-1], 200)
+    axis, far = (points_at(along, shape.along, line) for line in (shape.axis, shape.far))
+    phi = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
+    plane = axis[:, None] + np.cos(phi)[:, None] * (far - axis)[:, None]
+    up = np.broadcast_to(10.0 * np.sin(phi), plane.shape[:2])
+    depth = overlap(np.dstack([plane, up]))
+    assume(not 0.0 < depth < 0.2)
+    assert meets_itself(shape) == (depth > 0.0)

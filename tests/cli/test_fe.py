@@ -157,6 +157,30 @@ def test_verify_finds_the_drawing_of_a_design(samples: Path, tmp_path: Path) -> 
     assert found["fit"]["max_mm"] > 20.0  # most of the bulb is left to the other joints
 
 
+def test_verify_ends_with_7_where_the_tube_stands_hardly_more(
+    samples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    solve, looked = run.solve, list[float]()
+
+    def limited(*arguments: object, options: fem.Options, **more: object) -> fem.Solution:
+        looked.append(options.ahead)
+        return replace(solve(*arguments, **more), ahead=fem.Critical("limit point", 0.0103))
+
+    monkeypatch.setattr(run, "solve", limited)
+    design = shortened(samples, tmp_path)
+    tree = json.loads(design.read_text())
+    design.write_text(json.dumps({**tree, "pressure_bar": 0.1}))
+    result = call("verify", design, "--json")
+    assert looked == [pytest.approx(0.05 * 0.01)]
+    assert result.exit_code == 7
+    assert "limit point at 0.10 bar, less than 5 % above 0.10 bar" in error_of(result)
+    found = json.loads(result.stdout)
+    assert found["converged"] is True
+    assert found["ahead"]["kind"] == "limit point"
+    call("verify", design, "--pressure", "0.05")
+    assert looked[1:] == [0.0]  # what is not the design's pressure is not held against it
+
+
 def test_verify_without_a_target_says_so(samples: Path, tmp_path: Path) -> None:
     design = shortened(samples, tmp_path)
     with (tmp_path / "truth" / "bulb.csv").open("a") as drawing:

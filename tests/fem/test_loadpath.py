@@ -91,6 +91,28 @@ def test_the_path_goes_on_past_the_limit_by_volume(
     assert max(reached) <= run.critical.pressure * (1.0 + 1e-6)
 
 
+def test_what_lies_a_little_ahead_is_told(stepped: Solution) -> None:
+    assert stepped.critical is not None
+    limit = stepped.critical.pressure
+    near = solve(balloon(), [0.02, 0.97 * limit], COARSE, Options(ahead=0.05 * limit))
+    assert near.converged
+    assert near.critical is None
+    assert [state.pressure for state in near.states] == [0.0, 0.02, 0.97 * limit]
+    assert near.ahead is not None
+    assert near.ahead.kind == "limit point"
+    assert near.ahead.pressure == pytest.approx(limit, rel=2e-3)
+    far = solve(balloon(), [0.9 * limit], COARSE, Options(ahead=0.05 * limit))
+    assert far.converged
+    assert far.ahead is None
+    assert len(far.states) == 2
+
+
+def test_a_limit_below_the_asked_pressure_is_not_ahead() -> None:
+    run = solve(balloon(), [0.5], COARSE, Options(ahead=0.02))
+    assert run.critical is not None
+    assert run.ahead is None
+
+
 def test_not_converged_carries_its_history() -> None:
     # A tolerance below the last bits cannot be met.
     with pytest.raises(NotConverged, match="no equilibrium found") as caught:

@@ -49,7 +49,9 @@ FINGER = run(
 
 def test_json() -> None:
     found = json.loads(
-        fe_json(run(state(0.5, 10.0, -4.0, touches=True), state(1.0, 20.123456, -9.0)))
+        fe_json(
+            run(state(0.5, 10.0, -4.0, touches=True, overlap_mm=0.7), state(1.0, 20.123456, -9.0))
+        )
     )
     assert found["theta_deg"] == [[10.0, 20.1235], [-4.0, -9.0]]
     assert found["pressure_bar"] == [0.5, 1.0]
@@ -57,6 +59,10 @@ def test_json() -> None:
     assert found["seconds"] == 1.235
     assert found["air_ml"] == [1.0, 2.0]
     assert found["touches"] is True  # at any pressure
+    assert found["overlap_mm"] == 0.7
+    assert any("touches itself from 0.50 bar on" in text for text in found["warnings"])
+    assert found["theta_uncertain"] == []
+    assert found["ahead"] is None
     ended = json.loads(
         fe_json(run(state(0.5, 1.0), critical=CriticalPoint("limit point", 0.61)), {"a": 1})
     )
@@ -82,6 +88,23 @@ def test_text_and_csv() -> None:
     assert len({len(line) for line in lines[1:4]}) == 1
     assert any("touches itself" in line for line in lines)
     assert theta_csv(found).decode().splitlines()[1] == "0.5,10.000,-4.040,1.000"
+
+
+def test_joints_too_near_to_each_other_are_marked() -> None:
+    found = replace(run(state(0.5, 10.0, -4.0, 3.0)), theta_uncertain=(2, 3))
+    text = fe_text(found)
+    assert text.splitlines()[1].split() == ["bar", "theta1", "~theta2", "~theta3", "air"]
+    assert "the angles of joints 2 and 3, marked ~" in text
+    assert json.loads(fe_json(found))["theta_uncertain"] == [2, 3]
+
+
+def test_what_ends_the_path_a_little_above() -> None:
+    found = replace(run(state(0.5, 10.0)), ahead=CriticalPoint("limit point", 0.512))
+    told = json.loads(fe_json(found))
+    assert told["converged"] is True
+    assert told["ahead"] == {"kind": "limit point", "pressure_bar": 0.512}
+    assert told["warnings"] == ["limit point at 0.51 bar, less than 5 % above 0.50 bar"]
+    assert "note: limit point at 0.51 bar" in fe_text(found)
 
 
 def test_ranges_of_the_finger() -> None:

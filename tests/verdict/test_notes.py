@@ -11,12 +11,11 @@ from profiletool.joints.layout import Layout
 from profiletool.joints.paper.assign import joint_rules, theta_table
 from profiletool.joints.paper.sectors import BendingSector
 from profiletool.profile.target import Reach, profile_of_object
-from profiletool.records.design import Joint, Misfit
+from profiletool.records.design import Joint, Misfit, named
 from profiletool.records.frames import Pose, Shape
 from profiletool.records.request import TubeSpec
 from profiletool.verdict.notes import (
     disagreement,
-    named,
     polygon_warnings,
     shape_warnings,
     warnings,
@@ -110,8 +109,6 @@ def test_what_is_wrong_with_the_shape() -> None:
     (pressed,) = shape_warnings(tube_at(-4.0), ROUND, 1.0)
     assert "press up to 4.0 mm into the object" in pressed
     assert list(shape_warnings(tube_at(-4.0), ROUND, 4.1)) == []
-    curled = tube_at(0.0, *(Bend(at, 8.0, -2.6) for at in (15.0, 30.0, 45.0)))
-    assert list(shape_warnings(curled, ROUND, 100.0)) == ["the bent tube runs into itself"]
 
 
 def test_what_is_wrong_with_the_polygon() -> None:

@@ -248,6 +248,19 @@ def test_a_limit_point_before_the_operating_pressure(
     assert len(done.run.verification.states) == STEPS - 3
 
 
+def test_a_limit_point_just_above_the_operating_pressure(
+    samples: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ended = fem.Critical("limit point", 0.0612)
+    changed(monkeypatch, lambda s: replace(s, ahead=ended))
+    done = check(short(samples), along(run.verification.rest.shape.facing).points)
+    assert done.failure == "limit point at 0.61 bar, less than 5 % above 0.60 bar"
+    assert done.design.verified is False
+    assert done.shape is None
+    assert done.run is not None
+    assert done.run.verification.converged
+
+
 def test_a_design_that_cannot_be_modelled(samples: Path, run: Run) -> None:
     design = short(samples)
     thick = replace(design, tube=replace(design.tube, wall_mm=8.0))

@@ -1,0 +1,115 @@
+"""Designs whose numbers hold: tubes that stay clear of themselves, in steps that can be built."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from profiletool.bending.kinematics import meets_itself
+from profiletool.joints.bounds import wrap_mm
+from profiletool.records.design import Design, named
+from profiletool.records.fe import FeState
+from profiletool.records.request import Request
+from profiletool.verdict.draft import Draft
+
+PRESSURE_STEP_BAR = 0.01  # what a gauge can be set to
+_SAME = 1e-4  # of a step; design.json keeps six decimals
+
+
+def holding(attempt: Draft) -> Draft:
+    """Take the verification back where what was verified does not hold.
+
+    A tube that runs into itself was bent through itself, and numbers that cannot be built were
+    bent in place of those that will be.
+    """
+    check, bent = attempt.check, _bent(attempt)
+    if check is None or bent is None:
+        return attempt
+    off = off_steps(attempt.design, attempt.request)
+    if bent.touches:
+        failure = f"the bent tube runs into itself by {bent.overlap_mm:.1f} mm"
+    elif off:
+        failure = f"its numbers are not those that are built: {off[0]}"
+    else:
+        return attempt
+    design = replace(attempt.design, verified=False)
+    return replace(attempt, design=design, check=replace(check, design=design, failure=failure))
+
+
+def broken(attempt: Draft) -> tuple[str, ...]:
+    """Give reasons why an attempt's numbers do not hold; none where they do."""
+    return (*_curled(attempt), *_unbuilt(attempt.design, attempt.request))
+
+
+def _bent(attempt: Draft) -> FeState | None:
+    """Give the state at the operating pressure; None where finite elements did not get there."""
+    run = None if attempt.check is None else attempt.check.run
+    reached = run is not None and run.verification.converged
+    return run.verification.last if run is not None and reached else None
+
+
+def _curled(attempt: Draft) -> Iterator[str]:
+    """Say that the tube runs into itself: by finite elements, else by what it was chosen by."""
+    bent = _bent(attempt)
+    if meets_itself(attempt.best_shape) if bent is None else bent.touches:
+        by = f" by {bent.overlap_mm:.1f} mm" if bent is not None else ""
+        yield (
+            f"the bent tube runs into itself{by}: leave out what curls up with `start_pct` or "
+            "`end_pct`, or take a thinner tube with `outer_diameter_mm`"
+        )
+
+
+def _unbuilt(design: Design, request: Request) -> Iterator[str]:
+    off = off_steps(design, request)
+    if off:
+        yield (
+            f"no numbers that can be built were found to bend so: {'; '.join(off)}; try another "
+            "`max_pressure_bar` or number of `joints`, or 0 for `alpha_step_deg` and "
+            "`place_step_mm` if any number can be built"
+        )
+
+
+def off_steps(design: Design, request: Request) -> tuple[str, ...]:
+    """Name the numbers of an optimal design that are off the steps asked for; see `Request`.
+
+    The tube's end is cut to length, wherever that is.
+    """
+    if request.method != "optimal":
+        return ()
+    spec, said = request.tube, list[str]()
+    thread = float(np.degrees(spec.pitch_mm / spec.radius_mm))
+    step = thread if request.alpha_step_deg is None else request.alpha_step_deg
+    alpha = {j.number: j.alpha_closed_deg for j in design.joints}
+    off = [number for number, value in alpha.items() if not _whole(value, step)]
+    if off:
+        what = "whole threads" if request.alpha_step_deg is None else f"steps of {step:g} deg"
+        said.append(f"alpha_closed of {named(off)} ({alpha[off[0]]:.2f} deg) is not in {what}")
+    off = [number for number, places in _places(design, request).items() if places]
+    if off:
+        said.append(f"the place of {named(off)} is not in steps of {request.place_step_mm:g} mm")
+    if not _whole(design.pressure_bar, PRESSURE_STEP_BAR):
+        said.append(
+            f"the pressure, {design.pressure_bar:.4f} bar, is finer than {PRESSURE_STEP_BAR:g} bar"
+        )
+    return tuple(said)
+
+
+def _places(design: Design, request: Request) -> dict[int, bool]:
+    """Whether the place of each joint is off its step: its root's, or of the sector before it."""
+    spec, step = request.tube, request.place_step_mm
+    first = design.joints[0]
+    least = max(spec.root_mm, 0.5 * first.openF_mm + wrap_mm(spec))
+    off = {first.number: not (_whole(first.centre_mm, step) or first.centre_mm <= least + 1e-6)}
+    for before, joint in pairwise(design.joints):
+        apart = joint.centre_mm - before.centre_mm
+        wrapped = apart - 0.5 * (before.openF_mm + joint.openF_mm)
+        off[joint.number] = not (_whole(apart, step) or _whole(wrapped, step))
+    return off
+
+
+def _whole(value: float, step: float) -> bool:
+    """Whether a number is a multiple of a step; any is of 0."""
+    return step == 0.0 or abs(value / step - round(value / step)) < _SAME
