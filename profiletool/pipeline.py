@@ -24,6 +24,7 @@ from profiletool.verify.check import Check, check
 from profiletool.verify.forward import FeForwardModel
 from profiletool.verify.run import Progress
 from profiletool.verify.sensitivity import sensitivity_of
+from profiletool.verify.trim import trim_of
 
 _STABLE_SHARE = 0.97  # of the pressure at which FE loses its stability
 
@@ -141,7 +142,7 @@ def _verified(
 
 
 def _judged(attempt: Draft) -> Result:
-    """Add the verdict: reasons against the design, notes for its user, sensitivities."""
+    """Add the verdict: reasons against the design, notes, sensitivities, trim table."""
     misses = misses_of(attempt)
     reasons = reasons_of(attempt, misses)
     notes = notes_of(attempt, reasons, misses)
@@ -149,5 +150,6 @@ def _judged(attempt: Draft) -> Result:
     checked = attempt.check
     if checked is not None and checked.run is not None and checked.shape is not None:
         sensitivity = sensitivity_of(design, checked.run, attempt.profile)
-        design = replace(design, sensitivity=sensitivity)
+        trim = trim_of(design, checked.run, attempt.request.tube.max_pressure_bar)
+        design = replace(design, sensitivity=sensitivity, trim=trim)
     return Result(**vars(replace(attempt, design=design)), reasons=reasons, misses=misses)
