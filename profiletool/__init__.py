@@ -28,13 +28,16 @@ if TYPE_CHECKING:
     from profiletool.records.picture import Picture
     from profiletool.records.profile import DrawnLine, Profile
     from profiletool.records.request import Request, TubeSpec
+    from profiletool.records.setting import AngleReading, PressureSetting
     from profiletool.report.figures import figures_of
     from profiletool.subject.find import Subject
     from profiletool.verify.check import Check
+    from profiletool.verify.setting import trim_pressure
 
 __version__ = _version.VERSION
 
 __all__ = [
+    "AngleReading",
     "CampaignPlan",
     "Check",
     "Derivation",
@@ -43,6 +46,7 @@ __all__ = [
     "Joint",
     "Picture",
     "Plan",
+    "PressureSetting",
     "Profile",
     "ProfiletoolError",
     "Request",
@@ -57,11 +61,13 @@ __all__ = [
     "formula_file",
     "load_design",
     "plan_joints",
+    "trim_pressure",
     "verify_design",
 ]
 
 # Where each name is at home; a room is loaded when one of its names is first asked for.
 _HOMES = {
+    "AngleReading": "records.setting",
     "CampaignPlan": "campaign.derive",
     "Check": "verify.check",
     "Derivation": "campaign.derive",
@@ -70,6 +76,7 @@ _HOMES = {
     "Joint": "records.design",
     "Picture": "records.picture",
     "Plan": "joints.plan",
+    "PressureSetting": "records.setting",
     "Profile": "records.profile",
     "ProfiletoolError": "errors",
     "Request": "records.request",
@@ -84,6 +91,7 @@ _HOMES = {
     "formula_file": "campaign.formula_file",
     "load_design": "files.design_json",
     "plan_joints": "api",
+    "trim_pressure": "verify.setting",
     "verify_design": "api",
 }
 

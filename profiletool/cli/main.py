@@ -76,7 +76,7 @@ for _command, _example in (
     (derive.derive, "profiletool derive --diameter 16 --wall 1.6 --out tube16.json"),
     (table.table, "profiletool table --openF 6,8,10 --csv"),
     (table.assign, "profiletool assign --openF 8,8,8,8,6,10 --theta 30,30,30,25,20,45"),
-    (trim.trim, "profiletool trim bulb_design/design.json --tip=-22.4,-96.6 --at 1.67"),
+    (trim.trim, "profiletool trim bulb_design/design.json --tip -22.4,-96.6 --at 1.67"),
     (template.template, "profiletool template bulb_design/design.json --variant strip"),
     (template.sheet, "profiletool sheet --paper letter --out sheet.pdf"),
 ):

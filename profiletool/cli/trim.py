@@ -18,7 +18,7 @@ def trim(
         typer.Option(
             parser=two,
             metavar="X,Y",
-            help="Where the tip stands, mm in the object's frame (write --tip=X,Y); needs --at.",
+            help="Where the tip stands, mm in the object's frame; needs --at.",
         ),
     ] = None,
     at: Annotated[
@@ -46,11 +46,11 @@ def trim(
         from profiletool.verify.setting import by_angles, by_tip
 
         design = load_design(file)
+        readings = () if angles is None else read_angles(angles)
         try:
-            if angles is not None:
-                found = by_angles(design, read_angles(angles))
+            if tip is None or at is None:
+                found = by_angles(design, readings)
             else:
-                assert tip is not None and at is not None
                 found = by_tip(design, (tip[0], tip[1]), at)
         except (UnreadableInput, Infeasible) as error:
             raise type(error)(f"{file}: {error}") from error

@@ -22,6 +22,7 @@ from profiletool.report.stage import controls, legend, readout, stage
 from profiletool.report.steps import steps
 from profiletool.report.tables import joint_table, loads, provenance, sensitivity_table
 from profiletool.report.tradeoff import trade_off_figure
+from profiletool.report.trimming import trimming
 from profiletool.verdict.summary import off_text
 
 
@@ -88,6 +89,8 @@ def _sections(dossier: Dossier, film: Film) -> list[_Section]:
         )
         parts.append(_Section("trade-off", "More joints, more pressure", _plot(figure, "to", said)))
     parts.append(_Section("build", "How to build it", _build(dossier)))
+    if design.trim:
+        parts.append(_Section("setting", "Setting the pressure", trimming(design)))
     parts.append(_Section("template", "Cut template", _template(dossier)))
     if design.sensitivity:
         parts.append(_Section("sensitivity", "What small errors do", sensitivity_table(design)))

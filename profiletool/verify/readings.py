@@ -62,11 +62,22 @@ class Readings:
         found: FloatArray = self.theta - curves.angles(self.bars / stiffness, self.joints)
         return found
 
+    def cost(self, curves: Curves, stiffness: float) -> float:
+        """Sum the squares of what a stiffness leaves, over the standard deviations."""
+        return float(((self.off(curves, stiffness) / self.sigma) ** 2).sum())
+
+    def mean_off(self, curves: Curves, stiffness: float, joint: int) -> tuple[float, bool]:
+        """Mean by which a joint is off, deg, and whether that is more than chance."""
+        mine = self.chosen(self.joints == joint)
+        weight = mine.sigma**-2
+        mean = float((mine.off(curves, stiffness) * weight).sum() / weight.sum())
+        return mean, abs(mean) > max(_OFF_DEG, _OFF_SIGMAS * float(weight.sum()) ** -0.5)
+
     def stiffness(self, curves: Curves) -> float:
         """Fit it by least squares."""
 
         def cost(log: float) -> float:
-            return float(((self.off(curves, np.exp(log)) / self.sigma) ** 2).sum())
+            return self.cost(curves, float(np.exp(log)))
 
         low, high = np.log(_STIFFNESSES)
         trials = np.linspace(low, high, _TRIALS)
@@ -80,17 +91,24 @@ class Readings:
         return float(np.exp(found.x))
 
 
-def joints_off(used: Readings, off: FloatArray) -> tuple[tuple[int, ...], list[str]]:
-    """Name the joints whose mean is off by more than chance."""
-    joints, notes = [], []
-    for joint in np.unique(used.joints).tolist():
-        mine = used.joints == joint
-        weight = used.sigma[mine] ** -2
-        mean = float((off[mine] * weight).sum() / weight.sum())
-        if abs(mean) > max(_OFF_DEG, _OFF_SIGMAS * float(weight.sum()) ** -0.5):
-            joints.append(joint + 1)
-            notes.append(
-                f"joint {joint + 1} is {mean:+.1f} deg off by itself, which no pressure takes "
-                "out: look at its slits, threads and welds"
-            )
-    return tuple(joints), notes
+def joints_off(used: Readings, curves: Curves) -> dict[int, float]:
+    """Find joints that bend otherwise than the others let expect: number, and by how much, deg.
+
+    The worst is left out, and the stiffness fitted to the others, until these agree.
+    """
+    found: dict[int, float] = {}
+    left = used
+    while len(joints := np.unique(left.joints)) > 1:
+        trials = [left.chosen(left.joints != joint) for joint in joints]
+        stiffness = left.stiffness(curves)
+        if not any(left.mean_off(curves, stiffness, joint)[1] for joint in joints):
+            break
+        # The worst is the one without which the others agree best.
+        costs = [trial.cost(curves, trial.stiffness(curves)) for trial in trials]
+        k = int(np.argmin(costs))
+        mean, beyond = left.mean_off(curves, trials[k].stiffness(curves), joints[k])
+        if not beyond:
+            break
+        found[int(joints[k]) + 1] = mean
+        left = trials[k]
+    return dict(sorted(found.items()))

@@ -9,11 +9,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from math import floor
+from os import PathLike
+from pathlib import Path
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
 from profiletool.errors import Infeasible, UsageError
+from profiletool.files.angles_csv import read_angles
 from profiletool.records.design import Design
 from profiletool.records.setting import AngleReading, PressureSetting
 from profiletool.records.units import FloatArray
@@ -27,6 +30,46 @@ _OFF_SHARE = 0.03  # of the tube's length: a tip further off its way is not off 
 _SCATTER = 3.0  # standard deviations that angles may scatter by
 _ROUNDING_BAR = 5e-3  # half of what a pressure is rounded to
 _TURNS = 8  # of choosing the readings within the table
+
+
+def trim_pressure(
+    design: Design,
+    *,
+    tip_mm: tuple[float, float] | None = None,
+    at_bar: float | None = None,
+    angles: str | PathLike[str] | Sequence[AngleReading] | None = None,
+) -> PressureSetting:
+    """Find the pressure at which a finished actuator fits.
+
+    Parameters
+    ----------
+    design : Design
+        Verified, with its trim table: what the actuator was built from.
+    tip_mm : (x, y), optional
+        Where its tip stands, the end of the object-facing line, in the object's frame.
+    at_bar : float, optional
+        The pressure that it stands there at.
+    angles : path or sequence of AngleReading, optional
+        In place of the tip: angles of its joints, measured near the planned pressure.
+
+    Returns
+    -------
+    PressureSetting
+        ``pressure_bar`` is to be set.
+
+    Raises
+    ------
+    UsageError, UnreadableInput
+    Infeasible
+        It would take more pressure than finite elements checked.
+    """
+    if (angles is None) != (tip_mm is not None) or (tip_mm is None) != (at_bar is None):
+        raise UsageError("give either `tip_mm` and `at_bar`, or `angles`")
+    if tip_mm is not None and at_bar is not None:
+        return by_tip(design, tip_mm, at_bar)
+    if isinstance(angles, str | PathLike):
+        return by_angles(design, read_angles(Path(angles)))
+    return by_angles(design, angles or ())
 
 
 def by_tip(design: Design, tip_mm: tuple[float, float], at_bar: float) -> PressureSetting:
@@ -100,15 +143,20 @@ def by_angles(design: Design, readings: Sequence[AngleReading]) -> PressureSetti
         outside = 1 if middle > curves.top else -1
     off = used.off(curves, stiffness)
     rms = float(np.sqrt(np.mean(off**2)))
-    joints, notes = joints_off(used, off)
-    if not joints and rms > _SCATTER * float(np.median(used.sigma)):
+    apart = joints_off(used, curves)
+    notes = [
+        f"joint {joint} is {mean:+.1f} deg off by itself, which no pressure takes out: look at its "
+        "slits, threads and welds"
+        for joint, mean in apart.items()
+    ]
+    if not apart and rms > _SCATTER * float(np.median(used.sigma)):
         notes.append(
             f"the angles scatter by {rms:.1f} deg about what one stiffness explains: measure again"
         )
     if (left := int((~inside).sum())) and not outside:
         notes.append(f"{left} of {len(inside)} angles lie outside the trim table and do not count")
     found = PressureSetting(
-        0.0, curves.planned, stiffness, rms_deg=rms, joints_off=joints, notes=tuple(notes)
+        0.0, curves.planned, stiffness, rms_deg=rms, joints_off=tuple(apart), notes=tuple(notes)
     )
     return _set(curves, found, outside)
 
@@ -143,7 +191,7 @@ def _set(curves: Curves, found: PressureSetting, outside: int) -> PressureSettin
         least = "at least " if outside < 0 else ""
         raise Infeasible(
             f"this actuator is {least}{found.stiffness:.2f} times as stiff as planned and would "
-            f"fit at {least}{fits:.2f} bar, but finite elements checked it to {top:.2f} bar alone: "
+            f"need {least}{fits:.2f} bar, but finite elements checked it up to {top:.2f} bar only: "
             "cast it softer or thinner, or design it anew for its own rubber"
         )
     if outside:

@@ -69,7 +69,7 @@ def curves_of(design: Design) -> Curves:
     """
     if not design.verified:
         raise UnreadableInput(
-            "not verified by finite elements, so nothing tells where it stands: let design verify it"
+            "not verified by finite elements, so it holds no trim table: let design verify it"
         )
     if len(design.trim) < 2:
         raise UnreadableInput(
