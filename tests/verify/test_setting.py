@@ -8,13 +8,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import fem
 import profiletool
 from profiletool.errors import Infeasible, UnreadableInput, UsageError
 from profiletool.files.design_json import from_json, load_design, to_json
 from profiletool.records.built import TrimPoint
 from profiletool.records.design import Design
 from profiletool.records.setting import AngleReading
+from profiletool.records.side import side_sign
+from profiletool.verify.check import check
+from profiletool.verify.run import inflate, run_design
 from profiletool.verify.setting import by_angles, by_tip, trim_pressure
+from profiletool.verify.trim import trim_of
+from profiletool.verify.tube import actuator_of
 
 PLANNED = 1.67
 _POWER = np.array([1.5, 1.7, 1.6])
@@ -34,6 +40,11 @@ def tip(bar: float) -> tuple[float, float]:
 
 @pytest.fixture(scope="module")
 def design(samples: Path) -> Design:
+    return made_up(samples)
+
+
+def made_up(samples: Path) -> Design:
+    """A verified design of three joints with a trim table, as a file gives it."""
     paper = load_design(samples / "paper_bulb.json")
     joints = tuple(
         replace(
@@ -45,7 +56,7 @@ def design(samples: Path) -> Design:
     bars = [1.39, 1.43, 1.47, 1.51, 1.55, 1.59, 1.63, 1.67, 1.71, 1.75, 1.79, 1.84]
     trim = tuple(TrimPoint(bar, tip(bar), tuple(theta(bar).tolist())) for bar in bars)
     made = replace(paper, joints=joints, pressure_bar=PLANNED, verified=True, trim=trim)
-    return from_json(to_json(made), "made up")  # as a file gives it
+    return from_json(to_json(made), "made up")
 
 
 def read(stiffness: float, at: float, sigma: float = 1.0) -> list[AngleReading]:
@@ -186,3 +197,44 @@ def test_one_function_for_tip_and_angles(design: Design, tmp_path: Path) -> None
     for wrong in ({}, {"tip_mm": where}, {"at_bar": 1.0}, {"tip_mm": where, "angles": readings}):
         with pytest.raises(UsageError, match="either"):
             trim_pressure(design, **wrong)
+
+
+# --- against finite elements ------------------------------------------------------------------
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("stiffer", [1.08, 0.93])
+def test_rubber_of_another_stiffness_by_fe(samples: Path, stiffer: float) -> None:
+    """The whole actuator with other rubber: trim finds where FE's own misfit is least."""
+    paper = replace(load_design(samples / "paper_bulb.json"), pressure_bar=1.4)
+    sign = side_sign(paper.source.side)
+    run = run_design(paper, paper.pressure_bar)
+    wanted = run.verification.last.shape.facing
+    design = check(paper, wanted).design
+    design = replace(design, trim=trim_of(design, run))
+    nominal = actuator_of(design)
+    law = nominal.rubber
+    other = fem.MooneyRivlin(stiffer * law.C10, stiffer * law.C01, stiffer * law.K)
+    bars = np.round(design.pressure_bar * stiffer + np.arange(-0.04, 0.041, 0.02), 3)
+    at = design.pressure_bar
+    states = inflate(
+        replace(nominal, rubber=other), sorted({at, *bars.tolist()}), design.base_pose, sign
+    ).verification.states
+    # Distances of points of the same material: the square of the misfit is a parabola.
+    squares = [
+        np.mean((state.shape.facing - wanted) ** 2)
+        for state in states
+        if np.abs(bars - state.pressure_bar).min() < 1e-6
+    ]
+    a, b, _ = np.polyfit(bars, squares, 2)
+    least = -0.5 * b / a
+    (there,) = (state for state in states if abs(state.pressure_bar - at) < 1e-6)
+    x, y = there.shape.facing[-1].tolist()
+    by = [
+        by_tip(design, (x, y), at),
+        by_angles(design, [AngleReading(at, k + 1, t) for k, t in enumerate(there.theta_deg)]),
+    ]
+    for found in by:
+        assert found.stiffness * at == pytest.approx(least, abs=0.01)
+        assert abs(found.pressure_bar - at) > 0.05
+        assert found.notes == ()
