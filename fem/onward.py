@@ -75,14 +75,12 @@ def solve_onward(
             system.close()
     history = (*known.history, *way.history)
     found = replace(
-        known,
-        states=tuple(way.states),
-        history=history,
+        known, states=tuple(way.states), history=history,
         newton_iterations=sum(a.iterations for a in history),
         factorisations=sum(a.factorisations for a in history),
         seconds=known.seconds + time.perf_counter() - begun,
         failure="no stable equilibrium found from the last states" if failed else None,
-    )
+    )  # fmt: skip
     if found.failure is not None:
         raise NotConverged(found.failure, history, found.states[-1].pressure, found)
     return found

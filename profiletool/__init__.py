@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from profiletool.campaign.derive import CampaignPlan, Derivation
     from profiletool.campaign.formula_file import formula_file
     from profiletool.errors import ProfiletoolError
+    from profiletool.files.angles_csv import read_angles
     from profiletool.files.design_json import load_design
     from profiletool.joints.plan import Plan
     from profiletool.outputs import files_of
@@ -61,6 +62,7 @@ __all__ = [
     "formula_file",
     "load_design",
     "plan_joints",
+    "read_angles",
     "trim_pressure",
     "verify_design",
 ]
@@ -91,6 +93,7 @@ _HOMES = {
     "formula_file": "campaign.formula_file",
     "load_design": "files.design_json",
     "plan_joints": "api",
+    "read_angles": "files.angles_csv",
     "trim_pressure": "verify.setting",
     "verify_design": "api",
 }

@@ -150,6 +150,5 @@ def _judged(attempt: Draft) -> Result:
     checked = attempt.check
     if checked is not None and checked.run is not None and checked.shape is not None:
         sensitivity = sensitivity_of(design, checked.run, attempt.profile)
-        trim = trim_of(design, checked.run, attempt.request.tube.max_pressure_bar)
-        design = replace(design, sensitivity=sensitivity, trim=trim)
+        design = replace(design, sensitivity=sensitivity, trim=trim_of(design, checked.run))
     return Result(**vars(replace(attempt, design=design)), reasons=reasons, misses=misses)

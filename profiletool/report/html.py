@@ -90,7 +90,9 @@ def _sections(dossier: Dossier, film: Film) -> list[_Section]:
         parts.append(_Section("trade-off", "More joints, more pressure", _plot(figure, "to", said)))
     parts.append(_Section("build", "How to build it", _build(dossier)))
     if design.trim:
-        parts.append(_Section("setting", "Setting the pressure", trimming(design)))
+        parts.append(
+            _Section("setting", "Setting the pressure", trimming(design, dossier.most_bar))
+        )
     parts.append(_Section("template", "Cut template", _template(dossier)))
     if design.sensitivity:
         parts.append(_Section("sensitivity", "What small errors do", sensitivity_table(design)))

@@ -16,9 +16,17 @@ _FULL = 1.0999  # of the planned pressure: what the table should reach
 _ROUNDING_BAR = 5e-3
 
 
-def trimming(design: Design) -> Markup:
-    """Tell how to set the pressure on a finished actuator; the design holds a trim table."""
-    told = (tag("li", tag("h3", step.title), step.body) for step in _steps(design))
+def trimming(design: Design, most_bar: float) -> Markup:
+    """Tell how to set the pressure on a finished actuator.
+
+    Parameters
+    ----------
+    design : Design
+        With a trim table.
+    most_bar : float
+        Highest pressure that was asked for.
+    """
+    told = (tag("li", tag("h3", step.title), step.body) for step in _steps(design, most_bar))
     return joined((tag("ol", *told, class_="steps"), trim_table(design)))
 
 
@@ -39,17 +47,17 @@ def trim_table(design: Design) -> Markup:
     return table(heads, rows, said)
 
 
-def _steps(design: Design) -> Iterator[Step]:
+def _steps(design: Design, most_bar: float) -> Iterator[Step]:
     planned, top = _planned(design), design.trim[-1].pressure_bar
-    why = "It is 1.1 times the planned pressure, and the highest that finite elements checked"
-    if top < _FULL * planned.pressure_bar:
-        why = (
-            "It is the highest that finite elements checked: beyond lies the highest pressure "
-            "asked for, or no stable state was found"
-        )
+    why = (
+        "It is 1.1 times the planned pressure, and the highest that finite elements checked"
+        if top > _FULL * planned.pressure_bar
+        else "It is the highest at which finite elements found the actuator stable"
+    )
+    more = f" It is above the {most_bar:.2f} bar asked for: see that supply and fittings bear it."
     said = (
         f"Inflate {CYCLES} times to {top:.2f} bar and let the air out again: silicone softens in "
-        f"its first cycles. {why}. Never go above it."
+        f"its first cycles. {why}. Never go above it.{more if top > most_bar else ''}"
     )
     yield Step("Precondition", tag("p", said))
     said = (
@@ -84,8 +92,8 @@ def _setting(design: Design, planned: TrimPoint) -> Iterator[Markup]:
     if design.trim[-1].pressure_bar <= bar:
         yield tag(
             "p",
-            f"There is no room above {bar:.2f} bar: an actuator that turns out stiffer than "
-            "planned cannot be set. A lower operating pressure or a higher limit leaves some.",
+            f"Finite elements found no stable state above {bar:.2f} bar: an actuator that turns "
+            "out stiffer than planned cannot be set. A lower operating pressure leaves room.",
             class_="mind",
         )
 

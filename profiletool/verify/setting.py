@@ -9,14 +9,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from math import floor
-from os import PathLike
-from pathlib import Path
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
 from profiletool.errors import Infeasible, UsageError
-from profiletool.files.angles_csv import read_angles
 from profiletool.records.design import Design
 from profiletool.records.setting import AngleReading, PressureSetting
 from profiletool.records.units import FloatArray
@@ -37,7 +34,7 @@ def trim_pressure(
     *,
     tip_mm: tuple[float, float] | None = None,
     at_bar: float | None = None,
-    angles: str | PathLike[str] | Sequence[AngleReading] | None = None,
+    angles: Sequence[AngleReading] | None = None,
 ) -> PressureSetting:
     """Find the pressure at which a finished actuator fits.
 
@@ -49,8 +46,9 @@ def trim_pressure(
         Where its tip stands, the end of the object-facing line, in the object's frame.
     at_bar : float, optional
         The pressure that it stands there at.
-    angles : path or sequence of AngleReading, optional
-        In place of the tip: angles of its joints, measured near the planned pressure.
+    angles : sequence of AngleReading, optional
+        In place of the tip: angles of its joints, measured near the planned pressure; `read_angles`
+        takes them from a file.
 
     Returns
     -------
@@ -67,8 +65,6 @@ def trim_pressure(
         raise UsageError("give either `tip_mm` and `at_bar`, or `angles`")
     if tip_mm is not None and at_bar is not None:
         return by_tip(design, tip_mm, at_bar)
-    if isinstance(angles, str | PathLike):
-        return by_angles(design, read_angles(Path(angles)))
     return by_angles(design, angles or ())
 
 

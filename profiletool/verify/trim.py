@@ -23,13 +23,12 @@ _USED = 0.65  # of it: states from there on carry the interpolation
 _STEPS_BAR = (0.002, 0.005, 0.01, 0.02, 0.03, 0.04, 0.05, 0.1, 0.2, 0.5, 1.0)
 _MOST_STEPS = 12
 _ROUNDED_BAR = 0.01
-_NEXT = 1.01  # of the planned pressure: what lies no further above is not worth a state
 _DECIMALS = 3  # of mm and deg
 # One Newton step from the extrapolated state: angles within 0.01 deg, the tip within 0.02 mm.
 _OPTIONS = Options(tolerance=3e-3)
 
 
-def trim_of(design: Design, run: Run, most_bar: float | None = None) -> tuple[TrimPoint, ...]:
+def trim_of(design: Design, run: Run) -> tuple[TrimPoint, ...]:
     """Tabulate tip and angles at pressures around the design's own.
 
     One more state, above the planned pressure, is found from the run's last ones. Between the
@@ -40,17 +39,15 @@ def trim_of(design: Design, run: Run, most_bar: float | None = None) -> tuple[Tr
     design : Design
     run : Run
         Up to the design's pressure.
-    most_bar : float, optional
-        Highest pressure that the actuator may have.
 
     Returns
     -------
     tuple of TrimPoint
-        In rising order, one of them at the planned pressure; none is above the highest pressure
-        that has a stable state.
+        In rising order, one of them at the planned pressure; the last a tenth above it, or as far
+        as there are stable states.
     """
     planned = design.pressure_bar
-    solution, top = _further(run.solution, planned, _top(planned, most_bar))
+    solution, top = _further(run.solution, planned, _top(planned))
     # Beyond half a turn the angles go on, and do not start again from the other side.
     theta = np.unwrap([np.degrees(state.theta) for state in solution.states], period=360.0, axis=0)
     bars = np.array([BAR_PER_MPA * state.pressure for state in solution.states])
@@ -81,17 +78,13 @@ def trim_pressures(planned_bar: float, top_bar: float) -> tuple[float, ...]:
     return tuple(round(bar, 6) for bar in rows) + ((top_bar,) if top_bar > planned_bar else ())
 
 
-def _top(planned: float, most: float | None) -> float:
-    """Give the highest pressure to ask for; the planned one where there is no room above."""
-    top = round(_ROUNDED_BAR * ceil(HIGHEST * planned / _ROUNDED_BAR - 1e-6), 6)
-    top = top if most is None else min(top, most)
-    return top if top >= _NEXT * planned else planned
+def _top(planned: float) -> float:
+    """Give the highest pressure to ask for, bar."""
+    return round(_ROUNDED_BAR * ceil(HIGHEST * planned / _ROUNDED_BAR - 1e-6), 6)
 
 
 def _further(solution: Solution, planned: float, top: float) -> tuple[Solution, float]:
     """Take a run to the top, or as near to it as there are stable states."""
-    if top <= planned:
-        return solution, planned
     try:
         return solve_onward(solution, top / BAR_PER_MPA, _OPTIONS), top
     except NotConverged as error:

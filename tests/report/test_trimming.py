@@ -63,17 +63,19 @@ def test_the_table_marks_the_planned_row_and_says_what_to_set(design: Design) ->
 
 def test_how_to_do_it(design: Design) -> None:
     bar = design.pressure_bar
-    said = plain(trimming(design))
+    said = plain(trimming(design, 9.0))
     assert f"Inflate 5 times to {1.1 * bar:.2f} bar" in said
     assert "1.1 times the planned pressure" in said
     assert "wait for a minute" in said
     assert f"profiletool trim design.json --tip -20.0,-90.0 --at {bar:.2f}" in said
-    assert "no room" not in said
-    low = plain(trimming(with_trim(design, 1.05)))
+    assert "no stable state" not in said
+    assert "asked for" not in said
+    assert "above the 2.00 bar asked for" in plain(trimming(design, 2.0))
+    low = plain(trimming(with_trim(design, 1.05), 9.0))
     assert f"Inflate 5 times to {1.05 * bar:.2f} bar" in low
     assert "1.1 times" not in low
-    none = plain(trimming(with_trim(design, 1.0)))
-    assert f"There is no room above {bar:.2f} bar" in none
+    none = plain(trimming(with_trim(design, 1.0), 9.0))
+    assert f"found no stable state above {bar:.2f} bar" in none
 
 
 def test_one_story_on_the_page(dossiers: dict[str, Dossier], design: Design) -> None:

@@ -185,15 +185,12 @@ def test_bad_readings(design: Design) -> None:
             by_angles(design, readings)
 
 
-def test_one_function_for_tip_and_angles(design: Design, tmp_path: Path) -> None:
+def test_one_function_for_tip_and_angles(design: Design) -> None:
     assert profiletool.trim_pressure is trim_pressure
     where = tip(PLANNED / 1.08)
     assert trim_pressure(design, tip_mm=where, at_bar=PLANNED).pressure_bar == 1.80
     readings = read(1.08, PLANNED)
     assert trim_pressure(design, angles=readings).pressure_bar == 1.80
-    rows = "".join(f"{r.pressure_bar},{r.joint},{r.theta_deg}\n" for r in readings)
-    (tmp_path / "a.csv").write_text("pressure_bar,joint,theta_deg\n" + rows)
-    assert trim_pressure(design, angles=tmp_path / "a.csv").pressure_bar == 1.80
     for wrong in ({}, {"tip_mm": where}, {"at_bar": 1.0}, {"tip_mm": where, "angles": readings}):
         with pytest.raises(UsageError, match="either"):
             trim_pressure(design, **wrong)

@@ -66,20 +66,6 @@ def test_the_planned_row_is_that_of_the_joints(
     )
 
 
-def test_never_above_the_highest_pressure(
-    design: Design, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    capped = [point.pressure_bar for point in trim_of(design, run, 1.04)]
-    assert capped[-2:] == [1.0, 1.04]
-
-    def refused(*_: object) -> Solution:
-        raise AssertionError("no state is needed")
-
-    monkeypatch.setattr(trim, "solve_onward", refused)
-    assert trim_of(design, run, 1.005)[-1].pressure_bar == BAR
-    assert trim_of(design, run, BAR)[-1].pressure_bar == BAR
-
-
 def test_as_far_as_there_are_stable_states(
     design: Design, run: Run, table: tuple[TrimPoint, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
