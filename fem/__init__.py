@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from fem.mesh import Mesh
     from fem.meshsize import DEFAULT_MESH, PAPER_MESH, MeshSize
     from fem.near import solve_near
+    from fem.onward import solve_onward
     from fem.sensitivity import Rate, Sensitivities, flow_to, sensitivities
     from fem.solution import Solution, State
     from fem.solver import solve
@@ -87,6 +88,7 @@ __all__ = [
     "sensitivities",
     "solve",
     "solve_near",
+    "solve_onward",
 ]
 
 # The module that each public name comes from.
@@ -120,6 +122,7 @@ _HOMES = {
     "PAPER_MESH": "meshsize",
     "MeshSize": "meshsize",
     "solve_near": "near",
+    "solve_onward": "onward",
     "Rate": "sensitivity",
     "Sensitivities": "sensitivity",
     "flow_to": "sensitivity",

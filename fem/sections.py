@@ -62,6 +62,22 @@ class Chart:
         rotation = np.broadcast_to(np.eye(3), (len(self.z), 3, 3))
         return Pose(centre, rotation, x - self._nodal(centre), x)
 
+    def fitted(self, x: FloatArray) -> Pose:
+        """Return a pose of given nodal positions, its sections turned from rest as fits them best.
+
+        Poses of several states can so be extrapolated, as if they had been reached in one chart.
+        """
+        pose = self.of(x)
+        products = self.rest().shape[..., :, None] * pose.shape[..., None, :]
+        sums = self._sum(products.reshape(*x.shape[:-1], 9)).reshape(-1, 3, 3)
+        if self._half:
+            sums[:, 0, 1:] = sums[:, 1:, 0] = 0.0
+        before, _, after = np.linalg.svd(sums)
+        after[:, 2] *= np.linalg.det(before @ after)[:, None]
+        rotation = np.swapaxes(before @ after, 1, 2)
+        turned = self._turn(np.swapaxes(rotation, 1, 2), pose.shape)
+        return Pose(pose.centre, rotation, turned, x)
+
     def taut(self, strain: float) -> Pose:
         """Return the tube stretched a little every way, so that no thread is slack."""
         rest = self.rest()

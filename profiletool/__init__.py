@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from profiletool.campaign.derive import CampaignPlan, Derivation
     from profiletool.campaign.formula_file import formula_file
     from profiletool.errors import ProfiletoolError
+    from profiletool.files.angles_csv import read_angles
     from profiletool.files.design_json import load_design
     from profiletool.joints.plan import Plan
     from profiletool.outputs import files_of
@@ -28,13 +29,16 @@ if TYPE_CHECKING:
     from profiletool.records.picture import Picture
     from profiletool.records.profile import DrawnLine, Profile
     from profiletool.records.request import Request, TubeSpec
+    from profiletool.records.setting import AngleReading, PressureSetting
     from profiletool.report.figures import figures_of
     from profiletool.subject.find import Subject
     from profiletool.verify.check import Check
+    from profiletool.verify.setting import trim_pressure
 
 __version__ = _version.VERSION
 
 __all__ = [
+    "AngleReading",
     "CampaignPlan",
     "Check",
     "Derivation",
@@ -43,6 +47,7 @@ __all__ = [
     "Joint",
     "Picture",
     "Plan",
+    "PressureSetting",
     "Profile",
     "ProfiletoolError",
     "Request",
@@ -57,11 +62,14 @@ __all__ = [
     "formula_file",
     "load_design",
     "plan_joints",
+    "read_angles",
+    "trim_pressure",
     "verify_design",
 ]
 
 # Where each name is at home; a room is loaded when one of its names is first asked for.
 _HOMES = {
+    "AngleReading": "records.setting",
     "CampaignPlan": "campaign.derive",
     "Check": "verify.check",
     "Derivation": "campaign.derive",
@@ -70,6 +78,7 @@ _HOMES = {
     "Joint": "records.design",
     "Picture": "records.picture",
     "Plan": "joints.plan",
+    "PressureSetting": "records.setting",
     "Profile": "records.profile",
     "ProfiletoolError": "errors",
     "Request": "records.request",
@@ -84,6 +93,8 @@ _HOMES = {
     "formula_file": "campaign.formula_file",
     "load_design": "files.design_json",
     "plan_joints": "api",
+    "read_angles": "files.angles_csv",
+    "trim_pressure": "verify.setting",
     "verify_design": "api",
 }
 

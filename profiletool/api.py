@@ -38,6 +38,7 @@ from profiletool.subject.find import Subject
 from profiletool.subject.find import find_subject as find
 from profiletool.verify.check import Check, check
 from profiletool.verify.recompute import recomputed
+from profiletool.verify.trim import trim_of
 
 Source = str | PathLike[str] | ArrayLike | Picture | DrawnLine | Profile
 Say = Callable[[str], None]
@@ -144,8 +145,8 @@ def verify_design(
     Returns
     -------
     Check
-        ``check.design`` with the angles and the misfit by formula and by FE, and whether it is
-        ``verified``; ``check.failure`` says why not.
+        ``check.design`` with the angles and the misfit by formula and by FE, the trim table, and
+        whether it is ``verified``; ``check.failure`` says why not.
 
     Raises
     ------
@@ -153,7 +154,10 @@ def verify_design(
         The file holds no formula, or a joint bends out of the plane, which no formula follows.
     """
     points = np.asarray(target.points if isinstance(target, Profile) else target, dtype=float)
-    return check(recomputed(design, points, read_formula(formula)), points, progress)
+    done = check(recomputed(design, points, read_formula(formula)), points, progress)
+    if done.run is None or done.shape is None:
+        return done
+    return replace(done, design=replace(done.design, trim=trim_of(done.design, done.run)))
 
 
 def derive_formula(

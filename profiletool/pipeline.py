@@ -28,6 +28,7 @@ from profiletool.verify.fields import fields_of
 from profiletool.verify.forward import FeForwardModel
 from profiletool.verify.run import Progress
 from profiletool.verify.sensitivity import sensitivity_of
+from profiletool.verify.trim import trim_of
 
 _STABLE_SHARE = 0.94  # of the pressure at which FE loses its stability: 5 % more must stand
 
@@ -148,14 +149,15 @@ def _verified(
 
 
 def _with_errors(attempt: Draft) -> Draft:
-    """Add what errors of the build do to a verified design."""
+    """Add what errors of the build do to a verified design, and how to set its pressure."""
     checked, design = attempt.check, attempt.design
     if checked is None or checked.run is None or checked.shape is None:
         return attempt
+    design = replace(design, trim=trim_of(design, checked.run))
     points = target_points(attempt.profile)
     fields = fields_of(design, checked.run, points)
     if fields is None:
-        return attempt
+        return replace(attempt, design=design)
     sensitivity = sensitivity_of(design, fields, points)
     build = attempt.request.build
     design = replace(design, sensitivity=sensitivity, built=built_of(design, fields, build))

@@ -38,6 +38,8 @@ class Dossier:
         The cut template, as its file has it.
     options : sequence of AskedOption
         What was asked for.
+    most_bar : float
+        Highest pressure that was asked for.
     """
 
     scene: Scene
@@ -48,6 +50,7 @@ class Dossier:
     trade_off: TradeOff | None
     template_svg: str
     options: Sequence[AskedOption]
+    most_bar: float
 
     @property
     def found(self) -> Verification | None:
@@ -76,6 +79,7 @@ def dossier_of(result: Result, scene: Scene, template_svg: str) -> Dossier:
         trade_off=result.plan.trade_off,
         template_svg=template_svg,
         options=options_of(result.request),
+        most_bar=result.request.tube.max_pressure_bar,
     )
 
 

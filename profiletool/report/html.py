@@ -23,6 +23,7 @@ from profiletool.report.stage import controls, legend, readout, stage
 from profiletool.report.steps import steps
 from profiletool.report.tables import joint_table, loads, provenance, sensitivity_table
 from profiletool.report.tradeoff import trade_off_figure
+from profiletool.report.trimming import trimming
 from profiletool.verdict.summary import built_text, off_text
 
 
@@ -89,6 +90,10 @@ def _sections(dossier: Dossier, film: Film) -> list[_Section]:
         )
         parts.append(_Section("trade-off", "More joints, more pressure", _plot(figure, "to", said)))
     parts.append(_Section("build", "How to build it", _build(dossier)))
+    if design.trim:
+        parts.append(
+            _Section("setting", "Setting the pressure", trimming(design, dossier.most_bar))
+        )
     parts.append(_Section("template", "Cut template", _template(dossier)))
     if design.built is not None:
         parts.append(_Section("built", "What to expect of the built actuator", expectation(design)))

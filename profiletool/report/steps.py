@@ -191,11 +191,6 @@ def _plug(design: Design) -> Markup:
 
 def _mount(design: Design) -> Markup:
     pose = design.base_pose
-    origin = (
-        "the drawing's own origin"
-        if design.source.origin_px is None
-        else "the object's top in the middle"
-    )
     return joined(
         (
             tag(
@@ -209,7 +204,8 @@ def _mount(design: Design) -> Markup:
                 (
                     (
                         "The object-facing line starts",
-                        f"x {signed(pose.x_mm, 2)} mm, y {signed(pose.y_mm, 2)} mm from {origin}, "
+                        f"x {signed(pose.x_mm, 2)} mm, y {signed(pose.y_mm, 2)} mm from "
+                        f"{origin_of(design)}, "
                         "x to the right and y up",
                     ),
                     (
@@ -223,16 +219,24 @@ def _mount(design: Design) -> Markup:
     )
 
 
+def origin_of(design: Design) -> str:
+    """Say in words where the object's frame has its origin."""
+    drawn = design.source.origin_px is None
+    return "the drawing's own origin" if drawn else "the object's top in the middle"
+
+
 def _inflate(design: Design, found: Verification | None) -> Markup:
     critical = None if found is None else found.critical
     most = design.pressure_bar if critical is None else critical.pressure_bar
+    highest = design.trim[-1].pressure_bar if design.trim else most
+    to = f"to {design.pressure_bar:.2f} bar " if critical is None else ""
     parts = [
         tag(
             "p",
-            f"{'Never more than' if critical is None else 'Stay below'} {most:.2f} bar. Wear "
-            f"goggles. Go up in {_STEPS} even steps with a precise regulator, wait {_WAIT_S} s at "
-            "each and compare. Where a joint bends much more or less than it should, or the tube "
-            "bulges, let the air out and look at slits and welds.",
+            f"{'Never more than' if critical is None else 'Stay below'} {highest:.2f} bar. Wear "
+            f"goggles. Go up {to}in {_STEPS} even steps with a precise regulator, wait {_WAIT_S} "
+            "s at each and compare. Where a joint bends much more or less than it should, or the "
+            "tube bulges, let the air out and look at slits and welds.",
         )
     ]
     if critical is not None:
@@ -260,7 +264,7 @@ def _sensitive(design: Design) -> Iterator[Markup]:
             yield tag(
                 "p",
                 f"With the {row.what} the shape moves by {row.rms_mm:g} mm RMS and {row.max_mm:g} "
-                "mm at most: take a good gauge, or set the pressure by the shape.",
+                "mm at most: take a good gauge, and set the pressure by the shape.",
             )
 
 

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize_scalar
 
-from fem.arrays import FloatArray
 from fem.material import Law, MooneyRivlin, kinematics
 from profiletool.errors import UnreadableInput
 from profiletool.files.columns import NUMBER, read_lines, shown
+from profiletool.records.units import FloatArray
 
 MOST_POINTS = 20_000
 LEAST_POINTS = 5  # stretched ones

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import PurePath
 
 import numpy as np
@@ -33,6 +33,7 @@ LEGEND_GAP_MM = 6.0
 LEGEND_MM = 130.0
 NAME_MM = 100.0
 DATE_CHARS = 30
+CYCLES = 5  # in which silicone gets as soft as it stays
 
 KEY = (
     "Labels: joint, openF in mm / alpha in °.",
@@ -60,7 +61,7 @@ def notes(
     """
     left, right, bottom, top = frame
     kind = KINDS[wish.variant]
-    facts = [*_facts(design, size, wish), *_warnings(design, seam, wish)]
+    facts = [*_facts(design, size, wish), *_setting(design), *_warnings(design, seam, wish)]
     if left_out:
         facts.append(f"! {left_out} slits no longer than the kerf are left out.")
     titles = title_block(title_lines(design, kind.title), facts, (left, right, bottom))
@@ -187,6 +188,20 @@ def _facts(design: Design, size: tuple[float, float], wish: Wish) -> list[str]:
         f"{gauze.pitch_mm:g} mm, thread {gauze.thread_mm:g} mm{turns}, seam "
         f"{short(gauze.seam_deg)}°.  Kerf {wish.kerf_mm:g}.",
     ]
+
+
+def _setting(design: Design) -> Iterator[str]:
+    """Return how to set the pressure on the finished actuator, where the design says that."""
+    if not design.trim:
+        return
+    planned = min(design.trim, key=lambda row: abs(row.pressure_bar - design.pressure_bar))
+    x, y = planned.tip_mm
+    bar, top = design.pressure_bar, design.trim[-1].pressure_bar
+    yield (
+        f"Before use: inflate {CYCLES} times to {top:.2f} bar, never more. Hold {bar:.2f} bar for "
+        f"a minute, then set the pressure by the tip (planned: x {x:.1f}, y {y:.1f} mm) or the "
+        "angles: see the report."
+    )
 
 
 def _warnings(design: Design, seam: SeamChoice, wish: Wish) -> list[str]:

@@ -20,6 +20,7 @@ from formula.files import load_formula
 from profiletool.campaign.derive import load_base
 from profiletool.errors import ProfiletoolError, UnreadableInput
 from profiletool.files import read
+from profiletool.files.angles_csv import read_angles
 from profiletool.files.design_json import load_design
 from profiletool.files.formula import read_formula
 from profiletool.image.load import load_picture
@@ -42,6 +43,10 @@ DXF = (
     "10\n0\n20\n4\n10\n3\n20\n4\n10\n3\n20\n0\n0\nENDSEC\n0\nEOF\n"
 )
 RUBBER = "stretch,stress\n" + "".join(f"{1 + n / 20},{0.02 * n}\n" for n in range(30))
+ANGLES = (
+    "picture,pressure_bar,joint,theta_deg,sigma_deg,state\n"
+    "a.png,1.6,1,20.5,0.4,measured\na.png,1.6,2,,,lost\n"
+)
 TOML = (
     'side = "right"\nmax-length = 200\nroot = 12\njoints = 4\nverify = false\nformula = "paper"\n'
 )
@@ -67,6 +72,7 @@ READERS: dict[str, tuple[str, bytes, Callable[[Path], Any]]] = {
     "formula": ("f.json", FORMULA, lambda path: (read_formula(path), load_base(str(path)))),
     "rubber": ("r.csv", RUBBER.encode(), lambda path: parse_rubber(str(path))),
     "shape": ("shape.csv", b"curve,s_mm,x_mm,y_mm\ntarget,0,0,0\ntarget,5,5,0\n", read_shape),
+    "angles": ("angles.csv", ANGLES.encode(), read_angles),
     "options": ("lab.toml", TOML.encode(), read_options),
 }  # fmt: skip
 

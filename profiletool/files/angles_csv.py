@@ -1,0 +1,81 @@
+"""Measured joint angles as CSV: angles.csv."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+from profiletool.errors import UnreadableInput
+from profiletool.files.columns import NUMBER, read_lines, shown
+from profiletool.files.read import read_file
+from profiletool.records.setting import AngleReading
+
+COLUMNS = ("picture", "pressure_bar", "joint", "theta_deg", "sigma_deg", "state")
+_NEEDED = COLUMNS[1:4]
+_LOST = "lost"
+_MOST_BYTES = 20_000_000
+_MOST_JOINTS = 1000
+
+
+def read_angles(path: Path | str) -> tuple[AngleReading, ...]:
+    """Read measured joint angles.
+
+    Parameters
+    ----------
+    path : Path or str
+        CSV with a head of names, of which ``pressure_bar``, ``joint`` and ``theta_deg`` must be
+        there; ``sigma_deg`` is 1 where it is missing. Rows whose ``state`` is lost do not count.
+
+    Raises
+    ------
+    UnreadableInput
+        Naming the file and the line.
+    """
+    try:
+        data = read_file(Path(path), _MOST_BYTES, "a CSV file of angles")
+        readings = _readings(data)
+    except UnreadableInput as error:
+        raise UnreadableInput(f"cannot read {path}: {error}") from None
+    return readings
+
+
+def _readings(data: bytes) -> tuple[AngleReading, ...]:
+    lines = read_lines(data)
+    _, head = next(lines, (0, []))
+    names = [name.strip().strip('"').lower() for name in head]
+    missing = [name for name in _NEEDED if name not in names]
+    if missing:
+        raise UnreadableInput(
+            f"no column {missing[0]} in its first line; give pressure_bar,joint,theta_deg"
+        )
+    readings = []
+    for number, fields in lines:
+        if len(fields) != len(names):
+            raise UnreadableInput(
+                f"line {number} has {len(fields)} fields where the first has {len(names)}"
+            )
+        row = dict(zip(names, (field.strip('"') for field in fields), strict=True))
+        if row.get("state", "").strip().lower() != _LOST:
+            readings.append(_reading(row, number))
+    if not readings:
+        raise UnreadableInput("no angle in it that was measured")
+    return tuple(readings)
+
+
+def _reading(row: dict[str, str], line: int) -> AngleReading:
+    def number(name: str) -> float:
+        field = row[name]
+        if not NUMBER.fullmatch(field) or not math.isfinite(float(field)):
+            raise UnreadableInput(f"line {line}: {name} {shown(field)} is no number")
+        return float(field)
+
+    joint = number("joint")
+    if not (joint.is_integer() and 1 <= joint <= _MOST_JOINTS):
+        raise UnreadableInput(f"line {line}: joints are counted from 1, not {joint:g}")
+    pressure = number("pressure_bar")
+    if pressure < 0.0:
+        raise UnreadableInput(f"line {line}: a pressure of {pressure:g} bar")
+    sigma = number("sigma_deg") if row.get("sigma_deg") else 1.0
+    if sigma <= 0.0:
+        raise UnreadableInput(f"line {line}: sigma_deg must be above 0, not {sigma:g}")
+    return AngleReading(pressure, int(joint), number("theta_deg"), sigma)

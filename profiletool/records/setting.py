@@ -1,0 +1,62 @@
+"""Angles read at a finished actuator, and the pressure to set on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class AngleReading:
+    """The angle of a joint of a finished actuator, as it was measured.
+
+    Attributes
+    ----------
+    pressure_bar : float
+        At which it was measured.
+    joint : int
+        From 1, from the clamped end on.
+    theta_deg : float
+        Positive toward the object; where the joint bends away from it, a magnitude will do.
+    sigma_deg : float
+        Standard deviation of the reading.
+    """
+
+    pressure_bar: float
+    joint: int
+    theta_deg: float
+    sigma_deg: float = 1.0
+
+
+@dataclass(frozen=True)
+class PressureSetting:
+    """The pressure at which a finished actuator fits.
+
+    Attributes
+    ----------
+    pressure_bar : float
+        To set, in steps of 0.01 bar.
+    planned_bar : float
+        Of the design.
+    stiffness : float
+        Of the actuator, over the nominal one's: at a pressure it stands where the nominal one
+        does at the pressure over this.
+    off_mm : float or None
+        Distance of the measured tip from the way of the nominal one; None where angles were read.
+    rms_deg : float or None
+        Of what remains of the angles; None where the tip was measured.
+    joints_off : tuple of int
+        Joints that bend otherwise than the others let expect.
+    beyond : bool
+        Whether it was measured beyond the trim table, so that the pressure is but the next to try.
+    notes : tuple of str
+        What its user should know.
+    """
+
+    pressure_bar: float
+    planned_bar: float
+    stiffness: float
+    off_mm: float | None = None
+    rms_deg: float | None = None
+    joints_off: tuple[int, ...] = ()
+    beyond: bool = False
+    notes: tuple[str, ...] = ()

@@ -1,0 +1,37 @@
+"""The pressure to set on a finished actuator, as text and as JSON."""
+
+from __future__ import annotations
+
+import json
+
+from profiletool.records.setting import PressureSetting
+
+
+def setting_text(found: PressureSetting) -> str:
+    """Lay out the pressure to set, the stiffness found, what remains, and notes."""
+    lines = [
+        f"set {found.pressure_bar:.2f} bar (planned: {found.planned_bar:.2f}): this actuator is "
+        f"{found.stiffness:.3f} times as stiff as planned"
+    ]
+    if found.off_mm is not None:
+        lines.append(f"its tip lies {found.off_mm:.1f} mm off the way of the planned one")
+    if found.rms_deg is not None:
+        lines.append(f"its angles lie {found.rms_deg:.1f} deg RMS off those of the planned one")
+    lines += [f"note: {note}" for note in found.notes]
+    return "\n".join(lines) + "\n"
+
+
+def setting_json(found: PressureSetting) -> str:
+    """Write the same as one line of JSON."""
+    off, rms = found.off_mm, found.rms_deg
+    tree = {
+        "pressure_bar": found.pressure_bar,
+        "planned_bar": found.planned_bar,
+        "stiffness": round(found.stiffness, 4),
+        "off_mm": None if off is None else round(off, 3),
+        "rms_deg": None if rms is None else round(rms, 3),
+        "joints_off": list(found.joints_off),
+        "beyond": found.beyond,
+        "notes": list(found.notes),
+    }
+    return json.dumps(tree, allow_nan=False) + "\n"
