@@ -17,7 +17,7 @@ from profiletool.joints.bounds import Limits, cuts_of, limits_of
 from profiletool.joints.correction.parameters import PosedChain
 from profiletool.joints.expected import BUILT_WEIGHT, Aim, ErrorSizes, Expected
 from profiletool.joints.misfit import is_good, score
-from profiletool.joints.optimal.lines import Discretisation
+from profiletool.joints.optimal.lines import FAR, FINE, WIDE
 from profiletool.joints.optimal.polish import Goal, Polished, at_bound, goal_of, judge, polish
 from profiletool.joints.optimal.search import MOST_JOINTS, SearchResult, search
 from profiletool.records.design import Misfit
@@ -28,20 +28,6 @@ from profiletool.records.units import BAR_PER_MPA, FloatArray
 
 TOLERANCE_MM = 0.25
 
-FINE = Discretisation()
-# Where no line on the profile will do: bridges over corners and hollows.
-WIDE = Discretisation(
-    step_mm=2.5,
-    turns_rad=(-0.2, -0.1, 0.0, 0.1, 0.2),
-    offsets_mm=(-0.3, 0.7, 2.0, 4.5),
-    least_pressure=0.16,
-)
-FAR = Discretisation(
-    step_mm=4.0,
-    turns_rad=(-0.3, -0.15, 0.0, 0.15, 0.3),
-    offsets_mm=(-4.0, -1.0, 2.0, 5.0, 9.0),
-    least_pressure=0.16,
-)
 _FAR_MM = 3.0
 _HOPEFUL = 3.0  # a path this many times the tolerance off may be polished into it
 _WORTH = 0.1  # of the tolerance: what one more joint must bring
@@ -190,18 +176,10 @@ def _searches(
     most = min(options.count or MOST_JOINTS, room)
     searches: list[SearchResult] = []
     for grid, enough in ((FINE, 2.0 * options.tolerance_mm), (WIDE, _FAR_MM), (FAR, np.inf)):
-        searches.append(
-            search(
-                profile,
-                model,
-                cuts,
-                limits,
-                options.interference_mm,
-                grid,
-                most,
-                options.sizes,
-            )
+        found = search(
+            profile, model, cuts, limits, options.interference_mm, grid, most, options.sizes
         )
+        searches.append(found)
         rms = _rms(searches, profile)
         if (rms[:, -1] if options.count else rms).min() <= enough:
             break

@@ -52,6 +52,22 @@ class Discretisation:
     least_pressure: float = 0.08
 
 
+FINE = Discretisation()
+# Where no line on the profile will do: bridges over corners and hollows.
+WIDE = Discretisation(
+    step_mm=2.5,
+    turns_rad=(-0.2, -0.1, 0.0, 0.1, 0.2),
+    offsets_mm=(-0.3, 0.7, 2.0, 4.5),
+    least_pressure=0.16,
+)
+FAR = Discretisation(
+    step_mm=4.0,
+    turns_rad=(-0.3, -0.15, 0.0, 0.15, 0.3),
+    offsets_mm=(-4.0, -1.0, 2.0, 5.0, 9.0),
+    least_pressure=0.16,
+)
+
+
 @dataclass(frozen=True)
 class CandidateLines:
     """All lines, and the profile's points as each of them sees them.

@@ -160,9 +160,10 @@ def search(
     """
     lines, objective = lines_of(profile, limits, grid), objective_of(interference)
     pressure = _pressures(limits, grid)
-    bends = [
-        [tabulate(model, float(P), openF, sense, sizes) for sense in (1.0, -1.0)] for P in pressure
-    ]
+    bends = tuple(
+        tuple(tabulate(model, float(P), openF, sense, sizes) for sense in (1.0, -1.0))
+        for P in pressure
+    )
     most = _FIRST_MOST_MM**2 * profile.length_mm
     for attempt in range(_WIDENED):
         senses = [
@@ -183,18 +184,9 @@ def search(
             break
         most *= _WIDEN
     found = SearchResult(
-        lines,
-        tuple(senses),
-        pressure,
-        openF,
-        tuple(tuple(of) for of in bends),
-        tuple(priced),
-        tuple(totals),
-        cost,
-        np.zeros_like(cost),
-        most,
-        objective,
-    )
+        lines, tuple(senses), pressure, openF, bends, tuple(priced), tuple(totals), cost,
+        np.zeros_like(cost), most, objective,
+    )  # fmt: skip
     return found if sizes is None else _with_errors(found, model, sizes)
 
 
