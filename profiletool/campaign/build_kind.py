@@ -9,7 +9,7 @@ import numpy as np
 
 from profiletool.campaign.keys import key_of, seal, unseal
 from profiletool.campaign.kind import RunKind
-from profiletool.files.design_json import from_json as design_from_json
+from profiletool.records.design import Design
 from profiletool.verify.sample import BuildDraw, SampledBuild, run_draw
 
 SCHEMA = "profiletool.build/1"  # to be raised where `run` reads other numbers off a solution
@@ -21,22 +21,20 @@ class BuildTask:
 
     Attributes
     ----------
-    design : str
-        As design.json holds it.
+    design : Design
     points : tuple of (x, y)
         Of the profile, mm, evenly spaced.
     draw : BuildDraw
     """
 
-    design: str
+    design: Design
     points: tuple[tuple[float, float], ...]
     draw: BuildDraw
 
 
 def run(task: BuildTask) -> SampledBuild:
     """Run finite elements of one build."""
-    design = design_from_json(task.design, "the design")
-    return run_draw(design, task.draw, np.array(task.points))
+    return run_draw(task.design, task.draw, np.array(task.points))
 
 
 def key(task: BuildTask) -> str:

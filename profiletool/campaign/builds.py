@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from profiletool.campaign.build_kind import BuildTask
-from profiletool.files.design_json import to_json
 from profiletool.records.built import BuildErrors, BuiltMisfit
 from profiletool.records.design import Design
 from profiletool.records.units import FloatArray
@@ -54,9 +53,8 @@ def sample_builds(
     run_all : callable
         Tasks to outcomes, in the order of the tasks.
     """
-    text = to_json(design)
     target = tuple((float(x), float(y)) for x, y in points)
-    tasks = [BuildTask(text, target, draw) for draw in draws_of(build, len(design.joints), count)]
+    tasks = [BuildTask(design, target, draw) for draw in draws_of(build, len(design.joints), count)]
     found = run_all(tasks)
     good = np.array([(one.as_set_mm, one.trimmed_mm) for one in found if one.failure is None])
     failures = tuple(one.failure for one in found if one.failure is not None)

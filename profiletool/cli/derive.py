@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +19,7 @@ from profiletool.cli.console import (
     speaker,
 )
 from profiletool.cli.rows import parameters_of, with_signature
+from profiletool.cli.samples import cores
 from profiletool.errors import UsageError
 
 if TYPE_CHECKING:
@@ -162,7 +162,7 @@ def _derived(asked: Campaign, plan: CampaignPlan, say: Callable[[str], None]) ->
         return derive_formula(
             plan,
             base=base,
-            workers=asked.workers or _cores(),
+            workers=asked.workers or cores(),
             scheduler=asked.scheduler,
             runs=asked.runs,
             progress=told,
@@ -180,10 +180,3 @@ def _write(asked: Campaign, out: Path, found: Derivation) -> None:
     write.write_file(out, made, asked.force)
     if asked.report is not None:
         write.write_folder(asked.report, files, asked.force)
-
-
-def _cores() -> int:
-    """How many cores this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1

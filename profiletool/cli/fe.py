@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from profiletool.cli.console import Debug, Json, Quiet, exit_codes, progress_bar, speaker
+from profiletool.cli.samples import Samples, Scheduler, Workers, check_samples, sampled
 from profiletool.errors import Infeasible, NotVerified, UnreadableInput, UsageError
 
 if TYPE_CHECKING:
@@ -109,6 +110,9 @@ def verify(
         float | None,
         typer.Option(help="Highest pressure, bar (default: the design's own); ten equal steps."),
     ] = None,
+    samples: Samples = None,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
     out: Out = None,
     force: Force = False,
     as_json: Json = False,
@@ -128,9 +132,11 @@ def verify(
         from profiletool.joints.misfit import misfit_to
         from profiletool.report.dossier import formula_marks
         from profiletool.report.fe import compared_text, fe_json, fe_text, misfit_json
+        from profiletool.report.sampled import samples_text, samples_tree
         from profiletool.subject.recall import target_of
         from profiletool.verify.run import run_design
 
+        check_samples(samples, workers)
         design = load_design(file)
         most = design.pressure_bar if pressure is None else pressure
         _check_run(most, None, force)
@@ -141,8 +147,18 @@ def verify(
         target = target_of(design, file)
         off = None if target is None else misfit_to(found.last.shape, target.points)
         beside = None if target is None else target.file
-        told = fe_json(found, misfit_json(off, beside))
+        more = misfit_json(off, beside)
         text = fe_text(found) + compared_text(design, found, off, beside)
+        if samples is not None:
+            if target is None or pressure is not None or not found.converged:
+                raise UsageError(
+                    "--samples needs the target, shape.csv beside DESIGN.json, and the design's "
+                    "own pressure; leave --pressure away"
+                )
+            both = sampled(design, run, target.points, samples, workers, scheduler, quiet)
+            more |= samples_tree(*both)
+            text += samples_text(*both)
+        told = fe_json(found, more)
         typer.echo(told if as_json else text, nl=False)
         if out is not None:
             points = None if target is None else target.points

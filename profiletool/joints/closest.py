@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from profiletool.profile.curve import points_at
+from profiletool.profile.curve import arc_length, points_at
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
 
@@ -18,9 +18,17 @@ _TOUCHING_MM = 1e-6  # a distance with no direction
 
 def target_points(profile: Profile, step_mm: float = STEP_MM) -> FloatArray:
     """Points of a profile that count, evenly spaced, both ends among them: (M, 2) mm."""
-    count = max(round(profile.length_mm / step_mm), 1)
-    s = np.linspace(0.0, profile.length_mm, count + 1)
-    return points_at(s, profile.s, profile.points)
+    return _spaced(profile.s, profile.points, step_mm)
+
+
+def spaced(points: FloatArray, step_mm: float = STEP_MM) -> FloatArray:
+    """Space the points (N, 2) of a line evenly: as `target_points`."""
+    return _spaced(arc_length(points), points, step_mm)
+
+
+def _spaced(s: FloatArray, points: FloatArray, step_mm: float) -> FloatArray:
+    count = max(round(float(s[-1]) / step_mm), 1)
+    return points_at(np.linspace(0.0, float(s[-1]), count + 1), s, points)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,104 @@
+"""The part of `verify` that runs sampled builds."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from profiletool.cli.console import progress_bar
+from profiletool.errors import UnreadableInput, UsageError
+
+if TYPE_CHECKING:
+    from profiletool.campaign.builds import SampledBuilds
+    from profiletool.records.built import Built
+    from profiletool.records.design import Design
+    from profiletool.records.units import FloatArray
+    from profiletool.verify.run import Run
+
+Samples = Annotated[
+    int | None,
+    typer.Option(
+        help="Run so many builds with errors drawn at random too, and compare them with what the "
+        "design expects: some seconds each.",
+    ),
+]
+Workers = Annotated[
+    int | None,
+    typer.Option(help="Processes for the samples, one thread each (default: one a core)."),
+]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(help="A dask.distributed scheduler for them, tcp://HOST:PORT, to run on instead."),
+]
+_MOST = 100_000
+
+
+def cores() -> int:
+    """How many cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def check_samples(samples: int | None, workers: int | None) -> None:
+    """Refuse numbers that make no sense.
+
+    Raises
+    ------
+    UsageError
+    """
+    if samples is not None and not 2 <= samples <= _MOST:
+        raise UsageError(f"--samples must be 2 to {_MOST}, not {samples}")
+    if workers is not None and not 1 <= workers <= 1024:
+        raise UsageError(f"--workers must be 1 to 1024, not {workers}")
+
+
+def sampled(
+    design: Design,
+    run: Run,
+    target: FloatArray,
+    samples: int,
+    workers: int | None,
+    scheduler: str | None,
+    quiet: bool,
+) -> tuple[SampledBuilds, Built]:
+    """Run sampled builds of a design; give them and the figures to first order.
+
+    Raises
+    ------
+    UnreadableInput
+        When the tangent at the design's pressure allows no derivatives.
+    """
+    from profiletool.campaign.build_kind import BUILD_RUN
+    from profiletool.campaign.builds import sample_builds
+    from profiletool.campaign.store import Store, default_folder
+    from profiletool.campaign.workers import run_all
+    from profiletool.joints.closest import spaced
+    from profiletool.records.built import BuildErrors
+    from profiletool.verify.built import built_of
+    from profiletool.verify.fields import fields_of
+
+    build = BuildErrors() if design.built is None else design.built.build
+    points = spaced(target)
+    fields = fields_of(design, run, points)
+    if fields is None:
+        raise UnreadableInput("finite elements lose their stability here: nothing to sample about")
+    store = Store(default_folder(), BUILD_RUN)
+    with progress_bar("builds", quiet) as show:
+
+        def told(done: int, total: int) -> None:
+            if show is not None:
+                show(done / total)
+
+        found = sample_builds(
+            design,
+            points,
+            build,
+            samples,
+            lambda tasks: run_all(
+                tasks, store, workers=workers or cores(), scheduler=scheduler, progress=told
+            ),
+        )
+    return found, built_of(design, fields, build)
