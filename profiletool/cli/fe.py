@@ -150,12 +150,8 @@ def verify(
         more = misfit_json(off, beside)
         text = fe_text(found) + compared_text(design, found, off, beside)
         if samples is not None:
-            if target is None or pressure is not None or not found.converged:
-                raise UsageError(
-                    "--samples needs the target, shape.csv beside DESIGN.json, and the design's "
-                    "own pressure; leave --pressure away"
-                )
-            both = sampled(design, run, target.points, samples, workers, scheduler, quiet)
+            points = None if target is None or pressure is not None else target.points
+            both = sampled(design, run, points, samples, workers, scheduler, quiet)
             more |= samples_tree(*both)
             text += samples_text(*both)
         told = fe_json(found, more)

@@ -58,7 +58,7 @@ def check_samples(samples: int | None, workers: int | None) -> None:
 def sampled(
     design: Design,
     run: Run,
-    target: FloatArray,
+    target: FloatArray | None,
     samples: int,
     workers: int | None,
     scheduler: str | None,
@@ -68,6 +68,8 @@ def sampled(
 
     Raises
     ------
+    UsageError
+        When there is no target, or the run did not end at the design's own pressure.
     UnreadableInput
         When the tangent at the design's pressure allows no derivatives.
     """
@@ -80,6 +82,11 @@ def sampled(
     from profiletool.verify.built import built_of
     from profiletool.verify.fields import fields_of
 
+    if target is None or not run.verification.converged:
+        raise UsageError(
+            "--samples needs the target, shape.csv beside DESIGN.json, and the design's own "
+            "pressure; leave --pressure away"
+        )
     build = BuildErrors() if design.built is None else design.built.build
     points = spaced(target)
     fields = fields_of(design, run, points)
