@@ -22,7 +22,7 @@ from profiletool.joints.correction.correct import (
     correct,
 )
 from profiletool.joints.correction.parameters import PosedChain, parameters_of
-from profiletool.joints.expected import CORRECTED_WEIGHT, Aim, ErrorSizes, Expected, error_sizes
+from profiletool.joints.expected import Aim, ErrorSizes, Expected, error_sizes
 from profiletool.joints.layout import Layout
 from profiletool.joints.optimal.choose import TOLERANCE_MM, Choice, ChoiceOptions, choose
 from profiletool.joints.plan import Plan
@@ -167,7 +167,7 @@ def _sizes(request: Request) -> ErrorSizes | None:
 
 def _aim(request: Request, model: Model) -> Aim:
     sizes = _sizes(request)
-    expected = None if sizes is None else Expected(model, sizes, CORRECTED_WEIGHT)
+    expected = None if sizes is None else Expected(model, sizes)
     return Aim(request.interference_mm, expected)
 
 
