@@ -64,9 +64,24 @@ def check_verified(folder: Path, names: set[str]) -> dict[str, Any]:
     curves = {line.split(",")[0] for line in (folder / "shape.csv").read_text().splitlines()}
     assert curves == {"curve", "target", "formula", "fe"}
     check_series(folder)
+    check_trim(folder, design)
     with Image.open(folder / "overlay.png") as overlay:
         assert min(overlay.size) > 900
     return design
+
+
+def check_trim(folder: Path, design: dict[str, Any]) -> None:
+    """The table's planned row is the design's, and read back it asks for the planned pressure."""
+    planned = design["pressure_bar"]
+    (row,) = (row for row in design["trim"] if row["pressure_bar"] == planned)
+    assert [abs(theta) for theta in row["theta_deg"]] == pytest.approx(
+        [joint["theta_fe_deg"] for joint in design["joints"]], abs=1e-3
+    )
+    assert 0.0 <= round(design["trim"][-1]["pressure_bar"] - 1.1 * planned, 6) < 0.01
+    tip = ",".join(str(coordinate) for coordinate in row["tip_mm"])
+    result = call("trim", folder / "design.json", "--tip", tip, "--at", planned, "--json")
+    assert json.loads(result.stdout)["pressure_bar"] == planned
+    assert "Setting the pressure" in (folder / "report.html").read_text()
 
 
 def check_series(folder: Path) -> None:

@@ -20,6 +20,7 @@ from profiletool import (
     find_subject,
     load_design,
     plan_joints,
+    trim_pressure,
     verify_design,
 )
 from profiletool.errors import NoObject, NoScale, UnreadableInput, UsageError
@@ -145,3 +146,7 @@ def test_a_joint_changed_by_hand_is_verified_anew(made: Result) -> None:
     again = verify_design(moved, profile.points).design
     assert again.tube.root_mm == first.centre_mm - 1.0
     assert again.joints[0].F_mm == pytest.approx(first.F_mm + 1.0)
+    (row,) = (row for row in again.trim if row.pressure_bar == again.pressure_bar)
+    assert trim_pressure(again, tip_mm=row.tip_mm, at_bar=row.pressure_bar).stiffness == (
+        pytest.approx(1.0, abs=1e-3)
+    )
