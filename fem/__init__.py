@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from fem.sensitivity import Rate, Sensitivities, flow_to, sensitivities
     from fem.solution import Solution, State
     from fem.solver import solve
+    from fem.weight import Weight
 
 __all__ = [
     "AWAY",
@@ -79,6 +80,7 @@ __all__ = [
     "Sensitivities",
     "Solution",
     "State",
+    "Weight",
     "Window",
     "Yeoh",
     "chain",
@@ -127,6 +129,7 @@ _HOMES = {
     "Solution": "solution",
     "State": "solution",
     "solve": "solver",
+    "Weight": "weight",
 }
 
 

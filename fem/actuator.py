@@ -11,6 +11,7 @@ import numpy as np
 from fem.errors import BadGeometry
 from fem.gauze import Gauze
 from fem.material import PAPER_RUBBER, Law
+from fem.weight import Weight
 
 TOWARD, AWAY = np.radians(270.0), np.radians(90.0)  # alpha_center in the bending plane
 _LEAST_WRAP = 0.02  # of the diameter, between two windows
@@ -70,6 +71,8 @@ class Actuator:
     gauze : Gauze
     plug : float
         Length of the rigid closed end within ``length``, mm; air fills the rest.
+    weight : Weight or None
+        None leaves gravity out.
 
     Raises
     ------
@@ -84,6 +87,7 @@ class Actuator:
     rubber: Law = PAPER_RUBBER
     gauze: Gauze = field(default_factory=Gauze)
     plug: float = 1.0
+    weight: Weight | None = None
 
     def __post_init__(self) -> None:
         _check(self)
@@ -100,8 +104,12 @@ class Actuator:
 
     @property
     def in_plane(self) -> bool:
-        """Whether all sectors face the object or away from it, so that half the tube will do."""
-        return all(abs(np.cos(w.center)) < _PLANE for w in self.windows)
+        """Whether all sectors face the object or away from it, so that half the tube will do.
+
+        Nor may gravity pull it out of the plane.
+        """
+        level = self.weight is None or self.weight.in_plane
+        return level and all(abs(np.cos(w.center)) < _PLANE for w in self.windows)
 
     @property
     def wrapped(self) -> tuple[tuple[float, float], ...]:

@@ -5,13 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import asdict, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from profiletool.cli.console import Debug, Json, Quiet, exit_codes, progress_bar, speaker
+from profiletool.cli.rows import parameters_of, parameters_of_rows, with_signature
 from profiletool.errors import Infeasible, NotVerified, UnreadableInput, UsageError
+from profiletool.records.making import model_of
+from profiletool.records.model import PAPER_MODEL, ModelInputs
+from profiletool.records.options import MODEL
 
 if TYPE_CHECKING:
     from profiletool.records.fe import Verification
@@ -39,9 +44,11 @@ def joint(
     as_json: Json = False,
     quiet: Quiet = False,
     debug: Debug = False,
+    **options: Any,
 ) -> None:
     """Run finite elements of one joint, Root = F1 = 30 mm."""
     with exit_codes(debug):
+        model = model_of(options, PAPER_MODEL)
         _check_run(pressure, out, force)
         if not 0.0 <= alpha_center <= 360.0:
             raise UsageError(f"--alpha-center must be 0 to 360, not {alpha_center:g}")
@@ -54,14 +61,14 @@ def joint(
 
         spec = TubeSpec(outer_diameter_mm=diameter, wall_mm=wall)
         with _failures(UsageError), _bar(pressure, quiet) as progress:
-            actuator = joint_actuator(openF, alpha, alpha_center, spec)
+            actuator = joint_actuator(openF, alpha, alpha_center, spec, model)
             run = inflate(actuator, pressures_to(pressure), LYING, DOWN, progress=progress)
         found = run.verification
         what = (
             f"one joint: openF {openF:g} mm, alpha_closed {alpha:g} deg, "
-            f"alpha_center {alpha_center:g} deg"
+            f"alpha_center {alpha_center:g} deg{_beside(model)}"
         )
-        told = fe_json(found)
+        told = fe_json(found, _model_json(model))
         typer.echo(told if as_json else f"{what}\n{fe_text(found)}", nl=False)
         if out is not None:
             write.write_folder(out, outputs.fe_files(run, what, told), force)
@@ -78,9 +85,11 @@ def finger(
     as_json: Json = False,
     quiet: Quiet = False,
     debug: Debug = False,
+    **options: Any,
 ) -> None:
     """Run finite elements of the paper's three-joint finger (Table 2)."""
     with exit_codes(debug):
+        model = model_of(options, PAPER_MODEL)
         _check_run(pressure, out, force)
         from profiletool import outputs
         from profiletool.files import write
@@ -90,10 +99,10 @@ def finger(
 
         with _failures(UsageError), _bar(pressure, quiet) as progress:
             asked = pressures_to(pressure, 0.1)
-            run = inflate(finger_actuator(), asked, LYING, DOWN, progress=progress)
+            run = inflate(finger_actuator(model), asked, LYING, DOWN, progress=progress)
         found = run.verification
-        told = fe_json(found, ranges_json(found))
-        text = f"the paper's finger (Table 2)\n{fe_text(found)}{ranges_text(found)}"
+        told = fe_json(found, ranges_json(found) | _model_json(model))
+        text = f"the paper's finger (Table 2){_beside(model)}\n{fe_text(found)}{ranges_text(found)}"
         typer.echo(told if as_json else text, nl=False)
         if out is not None:
             title = "the paper's finger"
@@ -114,6 +123,7 @@ def verify(
     as_json: Json = False,
     quiet: Quiet = False,
     debug: Debug = False,
+    **options: Any,
 ) -> None:
     """Run finite elements of a whole actuator, and compare it with its target.
 
@@ -132,6 +142,7 @@ def verify(
         from profiletool.verify.run import run_design
 
         design = load_design(file)
+        design = replace(design, model=model_of(options, design.model))
         most = design.pressure_bar if pressure is None else pressure
         _check_run(most, None, force)
         wrong = UnreadableInput if design.feasible else Infeasible
@@ -141,8 +152,10 @@ def verify(
         target = target_of(design, file)
         off = None if target is None else misfit_to(found.last.shape, target.points)
         beside = None if target is None else target.file
-        told = fe_json(found, misfit_json(off, beside))
+        told = fe_json(found, misfit_json(off, beside) | _model_json(design.model))
         text = fe_text(found) + compared_text(design, found, off, beside)
+        if str(design.model):
+            text += f"not the paper's model: {design.model}\n"
         typer.echo(told if as_json else text, nl=False)
         if out is not None:
             points = None if target is None else target.points
@@ -151,6 +164,20 @@ def verify(
             write.write_folder(out, files, force)
             speaker(quiet)(f"written: {out}")
         _end(found)
+
+
+for _command in (joint, finger, verify):
+    with_signature(_command, parameters_of(_command), parameters_of_rows(MODEL))
+
+
+def _beside(model: ModelInputs) -> str:
+    """Say what of the model is not the paper's."""
+    return f"; {model}" if str(model) else ""
+
+
+def _model_json(model: ModelInputs) -> dict[str, Any]:
+    """Make the entry `model` of fe.json, where it is not the paper's."""
+    return {} if model == PAPER_MODEL else {"model": asdict(model)}
 
 
 def _check_run(pressure: float | None, out: Path | None, force: bool) -> None:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from formula.rubber import RubberLaw
 from profiletool.errors import UnreadableInput
 from profiletool.records.built import Built, TrimPoint
 from profiletool.records.frames import Pose
+from profiletool.records.model import ModelInputs
 from profiletool.records.side import Side
 
 TOWARD_DEG, AWAY_DEG = 270.0, 90.0  # alpha_center of a joint that bends toward the object, or away
@@ -207,6 +208,8 @@ class Design:
         The pressure to work at against the object; None where it is not computed.
     trim : tuple of TrimPoint
         Where the finished actuator stands at pressures about the planned one.
+    model : ModelInputs
+        What finite elements take.
     """
 
     source: Source
@@ -225,3 +228,4 @@ class Design:
     built: Built | None = None
     operate_bar: float | None = None
     trim: tuple[TrimPoint, ...] = ()
+    model: ModelInputs = field(default_factory=ModelInputs)

@@ -118,4 +118,5 @@ def _design(
         verified=False,
         warnings=(),
         method=request.method,
+        model=request.model,
     )
