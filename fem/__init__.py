@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from fem.actuator import AWAY, TOWARD, Actuator, Window, chain
     from fem.equilibrium import Critical
     from fem.errors import Attempt, BadGeometry, FemError, NotConverged
-    from fem.gauze import PAPER_GAUZE, Gauze
+    from fem.gauze import PAPER_GAUZE, AxialLines, Gauze
     from fem.items import Batch, Item
     from fem.loadpath import DEFAULT_OPTIONS, Options
     from fem.material import (
@@ -61,6 +61,7 @@ __all__ = [
     "TOWARD",
     "Actuator",
     "Attempt",
+    "AxialLines",
     "BadGeometry",
     "Batch",
     "Critical",
@@ -104,6 +105,7 @@ _HOMES = {
     "FemError": "errors",
     "NotConverged": "errors",
     "PAPER_GAUZE": "gauze",
+    "AxialLines": "gauze",
     "Gauze": "gauze",
     "Batch": "items",
     "Item": "items",

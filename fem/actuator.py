@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from fem.errors import BadGeometry
-from fem.gauze import Gauze
+from fem.gauze import AxialLines, Gauze
 from fem.material import PAPER_RUBBER, Law
 from fem.weight import Weight
 
@@ -73,6 +73,8 @@ class Actuator:
         Length of the rigid closed end within ``length``, mm; air fills the rest.
     weight : Weight or None
         None leaves gravity out.
+    lines : AxialLines or None
+        The axial threads in the windows one by one; None for smeared sectors.
 
     Raises
     ------
@@ -88,6 +90,7 @@ class Actuator:
     gauze: Gauze = field(default_factory=Gauze)
     plug: float = 1.0
     weight: Weight | None = None
+    lines: AxialLines | None = None
 
     def __post_init__(self) -> None:
         _check(self)
@@ -106,10 +109,12 @@ class Actuator:
     def in_plane(self) -> bool:
         """Whether all sectors face the object or away from it, so that half the tube will do.
 
-        Nor may gravity pull it out of the plane.
+        Nor may gravity pull it out of the plane, or single threads lie otherwise on one side
+        of it than on the other.
         """
         level = self.weight is None or self.weight.in_plane
-        return level and all(abs(np.cos(w.center)) < _PLANE for w in self.windows)
+        even = self.lines is None or self.lines.in_plane
+        return level and even and all(abs(np.cos(w.center)) < _PLANE for w in self.windows)
 
     @property
     def wrapped(self) -> tuple[tuple[float, float], ...]:
@@ -174,6 +179,8 @@ def _check(a: Actuator) -> None:
         )
     if not (a.plug >= 0.0 and a.free_length > 0.1 * a.diameter):
         raise BadGeometry(f"a tube of {a.length:g} mm with a plug of {a.plug:g} mm has no inside")
+    if a.lines is not None and len(a.lines.angles) != len(a.windows):
+        raise BadGeometry("single threads must be given for every window")
     least = _LEAST_WRAP * a.diameter
     for number, w in enumerate(a.windows, start=1):
         if not w.openF >= 0.025 * a.diameter:

@@ -19,6 +19,8 @@ from profiletool.records.model import PAPER_MODEL, ModelInputs
 from profiletool.records.options import MODEL
 
 if TYPE_CHECKING:
+    from profiletool.records.built import BuiltMisfit
+    from profiletool.records.design import Design
     from profiletool.records.fe import Verification
 
 _MOST_BAR = 20.0  # ten times what the tube bears
@@ -118,6 +120,12 @@ def verify(
         float | None,
         typer.Option(help="Highest pressure, bar (default: the design's own); ten equal steps."),
     ] = None,
+    threads: Annotated[
+        bool,
+        typer.Option(
+            "--threads", help="Run the single threads of each sector, too, beside the smeared."
+        ),
+    ] = False,
     out: Out = None,
     force: Force = False,
     as_json: Json = False,
@@ -152,10 +160,11 @@ def verify(
         target = target_of(design, file)
         off = None if target is None else misfit_to(found.last.shape, target.points)
         beside = None if target is None else target.file
-        told = fe_json(found, misfit_json(off, beside) | _model_json(design.model))
+        apart = _single_threads(design) if threads else None
+        added = _model_json(design.model, apart)
+        told = fe_json(found, misfit_json(off, beside) | added)
         text = fe_text(found) + compared_text(design, found, off, beside)
-        if str(design.model):
-            text += f"not the paper's model: {design.model}\n"
+        text += _model_text(design.model, apart)
         typer.echo(told if as_json else text, nl=False)
         if out is not None:
             points = None if target is None else target.points
@@ -170,14 +179,44 @@ for _command in (joint, finger, verify):
     with_signature(_command, parameters_of(_command), parameters_of_rows(MODEL))
 
 
+def _single_threads(design: Design) -> BuiltMisfit:
+    """Say how far the sheet's threads move the shape, at the design's own pressure.
+
+    Raises
+    ------
+    NotVerified
+    """
+    from fem.errors import FemError
+    from profiletool.verdict.model import with_threads
+
+    try:
+        off = with_threads(design).threads_off_mm
+    except FemError as error:
+        raise NotVerified(f"with single threads: {error}") from error
+    assert off is not None
+    return off
+
+
 def _beside(model: ModelInputs) -> str:
     """Say what of the model is not the paper's."""
     return f"; {model}" if str(model) else ""
 
 
-def _model_json(model: ModelInputs) -> dict[str, Any]:
-    """Make the entry `model` of fe.json, where it is not the paper's."""
-    return {} if model == PAPER_MODEL else {"model": asdict(model)}
+def _model_json(model: ModelInputs, apart: BuiltMisfit | None = None) -> dict[str, Any]:
+    """Make the entries of fe.json for a model that is not the paper's, and for single threads."""
+    entries = {} if model == PAPER_MODEL else {"model": asdict(model)}
+    return entries if apart is None else {**entries, "threads_off_mm": asdict(apart)}
+
+
+def _model_text(model: ModelInputs, apart: BuiltMisfit | None) -> str:
+    """Say what of the model is not the paper's, and what single threads do."""
+    text = f"not the paper's model: {model}\n" if str(model) else ""
+    if apart is not None:
+        text += (
+            f"single threads lie {apart.as_set:.2f} mm RMS off the smeared gauze, "
+            f"{apart.trimmed:.2f} once the pressure is set\n"
+        )
+    return text
 
 
 def _check_run(pressure: float | None, out: Path | None, force: bool) -> None:

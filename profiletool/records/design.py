@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from formula.rubber import RubberLaw
 from profiletool.errors import UnreadableInput
-from profiletool.records.built import Built, TrimPoint
+from profiletool.records.built import Built, BuiltMisfit, SectorThreads, TrimPoint
 from profiletool.records.frames import Pose
 from profiletool.records.model import ModelInputs
 from profiletool.records.side import Side
@@ -210,6 +210,12 @@ class Design:
         Where the finished actuator stands at pressures about the planned one.
     model : ModelInputs
         What finite elements take.
+    threads : tuple of SectorThreads
+        The axial threads that stay whole, joint by joint, turn by turn, as the template's sheet
+        has them.
+    threads_off_mm : BuiltMisfit or None
+        How far these single threads move the object-facing line from that of the smeared gauze,
+        mm RMS; None where it is not computed.
     """
 
     source: Source
@@ -229,3 +235,5 @@ class Design:
     operate_bar: float | None = None
     trim: tuple[TrimPoint, ...] = ()
     model: ModelInputs = field(default_factory=ModelInputs)
+    threads: tuple[SectorThreads, ...] = ()
+    threads_off_mm: BuiltMisfit | None = None

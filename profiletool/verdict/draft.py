@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request
 from profiletool.subject.find import Subject, digest_of
+from profiletool.template.threads import threads_of
 from profiletool.verify.check import Check
 
 
@@ -86,7 +87,7 @@ def _design(
     response = None if plan.by == "formula" else misfit(plan.bent, profile)
     seam = best_seam(layout.joints).seam_deg
     gauze = Gauze(spec.pitch_mm, spec.thread_mm, spec.turns, seam)
-    return Design(
+    design = Design(
         source=Source(
             file=request.file.name,
             sha256=digest_of(request),
@@ -120,3 +121,4 @@ def _design(
         method=request.method,
         model=request.model,
     )
+    return replace(design, threads=threads_of(design))

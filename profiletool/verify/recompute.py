@@ -47,4 +47,6 @@ def recomputed(design: Design, target: FloatArray, formula: Formula) -> Design:
         fit=Fit(formula=misfit_to(shape, target), fe=None),
         verified=False,
         sensitivity=(),
+        threads=(),
+        threads_off_mm=None,
     )
