@@ -36,7 +36,6 @@ from profiletool.records.profile import DrawnLine, Profile
 from profiletool.records.request import Request
 from profiletool.subject.find import Subject
 from profiletool.subject.find import find_subject as find
-from profiletool.template.threads import threads_of
 from profiletool.verify.check import Check, check
 from profiletool.verify.recompute import recomputed
 
@@ -154,8 +153,7 @@ def verify_design(
         The file holds no formula, or a joint bends out of the plane, which no formula follows.
     """
     points = np.asarray(target.points if isinstance(target, Profile) else target, dtype=float)
-    changed = recomputed(design, points, read_formula(formula))
-    return check(replace(changed, threads=threads_of(changed)), points, progress)
+    return check(recomputed(design, points, read_formula(formula)), points, progress)
 
 
 def derive_formula(

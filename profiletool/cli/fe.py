@@ -187,7 +187,7 @@ def _single_threads(design: Design) -> BuiltMisfit:
     NotVerified
     """
     from fem.errors import FemError
-    from profiletool.verdict.model import with_threads
+    from profiletool.verify.threads import with_threads
 
     try:
         off = with_threads(design).threads_off_mm

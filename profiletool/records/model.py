@@ -1,4 +1,4 @@
-"""What finite elements take of the paper's model, and what may be taken in its place."""
+"""Inputs of finite elements: the paper's model, and what may be taken in its place."""
 
 from __future__ import annotations
 

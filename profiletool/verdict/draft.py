@@ -10,13 +10,13 @@ from formula.theta import Formula
 from profiletool.bending.kinematics import deform
 from profiletool.joints.misfit import misfit
 from profiletool.joints.plan import Plan
+from profiletool.joints.threads import threads_of
 from profiletool.joints.windows import best_seam
 from profiletool.records.design import Design, Fit, FormulaRef, Gauze, Source, Tube
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request
 from profiletool.subject.find import Subject, digest_of
-from profiletool.template.threads import threads_of
 from profiletool.verify.check import Check
 
 

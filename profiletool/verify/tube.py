@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TypedDict
+from typing import Any
 
 import numpy as np
 
 from fem.actuator import Actuator, Window, chain
 from fem.gauze import THREAD_EA, Gauze
-from fem.material import Law
 from fem.weight import Weight
 from profiletool.bending.model import Chain
 from profiletool.records.design import Design
@@ -79,19 +78,10 @@ def tube_of(
     return Actuator(chain.length, windows, **_made_of(spec, spec, model, axes))
 
 
-class _Made(TypedDict):
-    """What an actuator is made of, under its names in an `Actuator`."""
-
-    diameter: float
-    wall: float
-    rubber: Law
-    gauze: Gauze
-    weight: Weight | None
-
-
 def _made_of(
     tube: DesignTube | TubeSpec, gauze: DesignGauze | TubeSpec, model: ModelInputs, axes: Axes
-) -> _Made:
+) -> dict[str, Any]:
+    """Give all fields of an actuator but its length and windows."""
     thread = model.thread_factor * THREAD_EA * (gauze.thread_mm / _PAPER_THREAD_MM) ** 2
     return {
         "diameter": tube.outer_diameter_mm,

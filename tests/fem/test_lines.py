@@ -1,4 +1,4 @@
-"""Single axial threads in the windows: how much they carry, and the smeared gauze as their limit."""
+"""Single axial threads in the windows: what they carry, and the smeared gauze as their limit."""
 
 from __future__ import annotations
 

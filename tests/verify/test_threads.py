@@ -9,11 +9,16 @@ import numpy as np
 import pytest
 
 from fem.gauze import AxialLines
+from profiletool.joints.threads import threads_of, whole_angles
 from profiletool.records.built import BuiltMisfit
 from profiletool.records.design import Design
-from profiletool.template.threads import threads_of, whole_angles
-from profiletool.verdict.model import threads_note, with_threads
-from profiletool.verify.threads import even_lines, sheet_lines, threads_off
+from profiletool.verify.threads import (
+    even_lines,
+    sheet_lines,
+    threads_note,
+    threads_off,
+    with_threads,
+)
 from profiletool.verify.tube import actuator_of
 from tests.verify.test_check import short
 

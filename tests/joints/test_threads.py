@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from profiletool.template.threads import thread_rolls, threads_of, whole_angles
-from profiletool.template.unroll import roll_of, slits
+from profiletool.joints.roll import roll_of
+from profiletool.joints.threads import thread_rolls, threads_of, whole_angles
+from profiletool.template.unroll import slits
 from tests.template.designs import bulb, design_of, joint, short_tube
 
 

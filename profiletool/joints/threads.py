@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from profiletool.joints.roll import roll_of, window_intervals
 from profiletool.joints.windows import FULL_CIRCLE, SAME_DEG
 from profiletool.records.built import SectorThreads
 from profiletool.records.design import Design, Gauze, Joint, Tube
 from profiletool.records.units import FloatArray
-from profiletool.template.unroll import roll_of, window_intervals
 
 _DECIMALS = 4  # deg
 
