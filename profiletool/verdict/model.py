@@ -24,7 +24,7 @@ def model_notes(design: Design, refined: bool) -> Iterator[str]:
             yield f"no finite elements took {design.model} into account"
         return
     length = design.tube.length_mm
-    mesh = f"its mesh leaves up to {_MESH_SHARE * length:.1f} mm in the shape"
+    mesh = f"the mesh leaves up to {_MESH_SHARE * length:.1f} mm in the shape"
     if design.model == PAPER_MODEL and design.tube.rubber is None:
         yield (
             f"finite elements take the paper's Poisson's ratio, {PAPER_NU:g}; rubber is nearly "
