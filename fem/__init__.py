@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from fem.actuator import AWAY, TOWARD, Actuator, Window, chain
     from fem.equilibrium import Critical
     from fem.errors import Attempt, BadGeometry, FemError, NotConverged
-    from fem.gauze import PAPER_GAUZE, Gauze
+    from fem.gauze import PAPER_GAUZE, AxialLines, Gauze
     from fem.items import Batch, Item
     from fem.loadpath import DEFAULT_OPTIONS, Options
     from fem.material import (
@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from fem.sensitivity import Rate, Sensitivities, flow_to, sensitivities
     from fem.solution import Solution, State
     from fem.solver import solve
+    from fem.weight import Weight
 
 __all__ = [
     "AWAY",
@@ -61,6 +62,7 @@ __all__ = [
     "TOWARD",
     "Actuator",
     "Attempt",
+    "AxialLines",
     "BadGeometry",
     "Batch",
     "Critical",
@@ -80,6 +82,7 @@ __all__ = [
     "Sensitivities",
     "Solution",
     "State",
+    "Weight",
     "Window",
     "Yeoh",
     "chain",
@@ -104,6 +107,7 @@ _HOMES = {
     "FemError": "errors",
     "NotConverged": "errors",
     "PAPER_GAUZE": "gauze",
+    "AxialLines": "gauze",
     "Gauze": "gauze",
     "Batch": "items",
     "Item": "items",
@@ -130,6 +134,7 @@ _HOMES = {
     "Solution": "solution",
     "State": "solution",
     "solve": "solver",
+    "Weight": "weight",
 }
 
 

@@ -9,8 +9,9 @@ from itertools import pairwise
 import numpy as np
 
 from fem.errors import BadGeometry
-from fem.gauze import Gauze
+from fem.gauze import AxialLines, Gauze
 from fem.material import PAPER_RUBBER, Law
+from fem.weight import Weight
 
 TOWARD, AWAY = np.radians(270.0), np.radians(90.0)  # alpha_center in the bending plane
 _LEAST_WRAP = 0.02  # of the diameter, between two windows
@@ -70,6 +71,10 @@ class Actuator:
     gauze : Gauze
     plug : float
         Length of the rigid closed end within ``length``, mm; air fills the rest.
+    weight : Weight or None
+        None leaves gravity out.
+    lines : AxialLines or None
+        The axial threads in the windows one by one; None for smeared sectors.
 
     Raises
     ------
@@ -84,6 +89,8 @@ class Actuator:
     rubber: Law = PAPER_RUBBER
     gauze: Gauze = field(default_factory=Gauze)
     plug: float = 1.0
+    weight: Weight | None = None
+    lines: AxialLines | None = None
 
     def __post_init__(self) -> None:
         _check(self)
@@ -100,8 +107,14 @@ class Actuator:
 
     @property
     def in_plane(self) -> bool:
-        """Whether all sectors face the object or away from it, so that half the tube will do."""
-        return all(abs(np.cos(w.center)) < _PLANE for w in self.windows)
+        """Whether all sectors face the object or away from it, so that half the tube will do.
+
+        Nor may gravity pull it out of the plane, or single threads lie otherwise on one side
+        of it than on the other.
+        """
+        level = self.weight is None or self.weight.in_plane
+        even = self.lines is None or self.lines.in_plane
+        return level and even and all(abs(np.cos(w.center)) < _PLANE for w in self.windows)
 
     @property
     def wrapped(self) -> tuple[tuple[float, float], ...]:
@@ -166,6 +179,8 @@ def _check(a: Actuator) -> None:
         )
     if not (a.plug >= 0.0 and a.free_length > 0.1 * a.diameter):
         raise BadGeometry(f"a tube of {a.length:g} mm with a plug of {a.plug:g} mm has no inside")
+    if a.lines is not None and len(a.lines.angles) != len(a.windows):
+        raise BadGeometry("single threads must be given for every window")
     least = _LEAST_WRAP * a.diameter
     for number, w in enumerate(a.windows, start=1):
         if not w.openF >= 0.025 * a.diameter:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem.arrays import FloatArray, IntArray
+from fem.deadweight import Deadweight
 from fem.items import ITEMS, MakeItem
 from fem.mesh import Mesh
 from fem.part import Part
@@ -89,7 +90,7 @@ class System:
     mesh : Mesh
     threads : {1, 2}
     extra : sequence of MakeItem
-        What contributes to the energy beside `fem.items.ITEMS`.
+        What contributes to the energy beside `fem.items.ITEMS` and the actuator's weight.
     """
 
     def __init__(self, mesh: Mesh, threads: int = 2, extra: Sequence[MakeItem] = ()) -> None:
@@ -98,7 +99,8 @@ class System:
         self.plug = Plug(mesh)
         self.version = 0
         middle = mesh.layers // 2
-        self.middle, items = middle, (*ITEMS, *extra)
+        own = () if mesh.actuator.weight is None else (Deadweight,)
+        self.middle, items = middle, (*ITEMS, *own, *extra)
         self._parts = (
             Part(mesh, self.unknowns, range(middle), items, from_root=True),
             Part(mesh, self.unknowns, range(middle, mesh.layers), items, from_root=False),

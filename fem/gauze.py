@@ -63,6 +63,43 @@ PAPER_GAUZE = Gauze(slack=1.0, allowance=0.0, pitch=float(np.radians(6.0) * 10.0
 
 
 @dataclass(frozen=True)
+class AxialLines:
+    """Single axial threads in the windows, each a line along the tube.
+
+    Wrapped sectors, where no thread is cut, stay smeared.
+
+    Attributes
+    ----------
+    angles : tuple of tuple of float
+        Angular positions of the threads that are whole in each window, rad.
+    EA : float
+        Stiffness of one of them, N.
+
+    Raises
+    ------
+    ValueError
+        When the stiffness is not above 0.
+    """
+
+    angles: tuple[tuple[float, ...], ...]
+    EA: float
+
+    def __post_init__(self) -> None:
+        if not self.EA > 0.0:
+            raise ValueError("single threads need a stiffness above 0")
+
+    @property
+    def in_plane(self) -> bool:
+        """Whether the plane x = 0 mirrors the threads of every window onto themselves."""
+        for angles in self.angles:
+            own = np.exp(1j * np.array(angles))
+            mirrored = -own.conj()
+            if len(own) and np.abs(own[:, None] - mirrored).min(axis=0).max() > 1e-6:
+                return False
+        return True
+
+
+@dataclass(frozen=True)
 class Threads:
     """Thread points on faces.
 

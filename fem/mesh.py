@@ -187,8 +187,7 @@ class _Woven(TypedDict):
 def _woven(
     actuator: Actuator, size: MeshSize, z: FloatArray, segment: IntArray, columns: FloatArray
 ) -> _Woven:
-    sectors = [actuator.windows[k // 2] if k % 2 else None for k in segment.tolist()]
     return {
-        "axial": axial_threads(actuator, size, np.diff(z), sectors, columns),
+        "axial": axial_threads(actuator, size, np.diff(z), segment, columns),
         "hoop": hoop_threads(actuator, size, z, columns),
     }

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
 
 from fem.actuator import Actuator, Window
-from fem.arrays import FloatArray
+from fem.arrays import FloatArray, IntArray
 from fem.element import face_nodes, natural_nodes, shape
 from fem.gauze import Gauze, Threads
 from fem.meshsize import MeshSize, one_brick, start_angle
@@ -26,7 +25,7 @@ def axial_threads(
     actuator: Actuator,
     size: MeshSize,
     heights: FloatArray,
-    sectors: Sequence[Window | None],
+    segment: IntArray,
     columns: FloatArray,
 ) -> Threads:
     """Place the axial threads.
@@ -36,15 +35,15 @@ def axial_threads(
     actuator : Actuator
     size : MeshSize
     heights : (layers,) mm
-    sectors : sequence
-        The window of each layer, None where it is wrapped.
+    segment : (layers,) int
+        Which stretch of the tube a layer lies in; see `fem.mesh.Mesh`.
     columns : (around + 1,) rad
         Where the faces of a layer begin and end.
     """
     gauze = actuator.gauze
     around = len(columns) - 1
-    kinds = list(dict.fromkeys(sectors))
-    lines = [_lines(gauze, actuator.radius, columns, window, size) for window in kinds]
+    kinds, which = _kinds(actuator, segment)
+    lines = [_lines(actuator, columns, kind, size) for kind in kinds]
     most = max(eta.shape[1] for eta, _ in lines)
     eta, width = (
         np.stack([np.pad(pair[k], ((0, 0), (0, most - pair[k].shape[1]))) for pair in lines])
@@ -55,28 +54,46 @@ def axial_threads(
     dN = _face_gradient(size, shape_at, np.broadcast_to(zeta, shape_at.shape))
     gradient = dN[..., 1].reshape(len(kinds), around, -1, dN.shape[-2])
     weight = (gauze.stiffness * width[..., None] * along).reshape(len(kinds), around, -1)
-    which, half = [kinds.index(window) for window in sectors], 0.5 * heights[:, None, None]
+    half = 0.5 * heights[:, None, None]
     gradient = gradient[which] / half[..., None]
     weight = weight[which] * half
     return Threads(gradient.reshape(-1, *gradient.shape[2:]), weight.reshape(-1, weight.shape[2]))
 
 
+Kind = Window | int | None
+
+
+def _kinds(actuator: Actuator, segment: IntArray) -> tuple[list[Kind], list[int]]:
+    """Kinds of layers by their axial threads, and which of them each layer is.
+
+    None for wrapped sectors, else the window, or its number where it has single threads.
+    """
+    single = actuator.lines is not None
+    of_layers: list[Kind] = [
+        None if k % 2 == 0 else k // 2 if single else actuator.windows[k // 2]
+        for k in segment.tolist()
+    ]
+    kinds = list(dict.fromkeys(of_layers))
+    return kinds, [kinds.index(kind) for kind in of_layers]
+
+
 def _lines(
-    gauze: Gauze,
-    radius: float,
-    columns: FloatArray,
-    window: Window | None,
-    size: MeshSize,
+    actuator: Actuator, columns: FloatArray, kind: Kind, size: MeshSize
 ) -> tuple[FloatArray, FloatArray]:
     """Where uncut axial threads cross each face of a layer: (eta, width in mm), each (around, q).
 
     The smeared gauze takes Gauss points within the covered part of each face, so that the edge
     of a sector need not lie on the mesh.
     """
+    gauze, radius = actuator.gauze, actuator.radius
+    if isinstance(kind, int):
+        assert actuator.lines is not None
+        angles = np.array(actuator.lines.angles[kind])
+        return _at_angles(columns, angles, actuator.lines.EA / gauze.stiffness)
     if gauze.pitch is not None:
-        return _single_lines(gauze, radius, columns, window)
+        return _single_lines(gauze, radius, columns, kind)
     points, w = np.polynomial.legendre.leggauss(size.orders[1])
-    parts = np.array([_covered(gauze, start, end, window) for start, end in pairwise(columns)])
+    parts = np.array([_covered(gauze, start, end, kind) for start, end in pairwise(columns)])
     a, b = parts[..., 0, None], parts[..., 1, None]
     eta = 0.5 * (a + b) + 0.5 * (b - a) * points
     width = 0.5 * (b - a) * w * (0.5 * radius * np.diff(columns)[:, None, None])
@@ -110,22 +127,29 @@ def _single_lines(
     assert gauze.pitch is not None
     count = max(4, round(2.0 * np.pi * radius / gauze.pitch))
     step = 2.0 * np.pi / count
+    phi = start_angle() + np.arange(0.0, count) * step
+    if window is not None:
+        apart = (phi - window.center + np.pi) % (2.0 * np.pi) - np.pi
+        phi = phi[np.abs(apart) <= 0.5 * (window.alpha + gauze.allowance) + 1e-9]
+    return _at_angles(columns, phi, step * radius)
+
+
+def _at_angles(
+    columns: FloatArray, angles: FloatArray, width: float
+) -> tuple[FloatArray, FloatArray]:
+    """Lines at angles (rad) that stand for a width (mm) each: (eta, width), each (around, q).
+
+    A line on the border of two faces counts half in each; so does one on the plane of symmetry,
+    the other half of which is not modelled.
+    """
+    turn = np.sort((angles - columns[0] + 1e-9) % (2.0 * np.pi) - 1e-9)
+    turn = columns[0] + np.concatenate([turn, turn[:1] + 2.0 * np.pi])
     rows = []
     for start, end in pairwise(columns):
-        row = []
-        for k in range(count + 1):
-            phi = start_angle() + k * step
-            eta = 2.0 * (phi - start) / (end - start) - 1.0
-            if not -1.0 - 1e-9 <= eta <= 1.0 + 1e-9:
-                continue
-            # A thread on the border of two faces counts half in each.
-            share = 0.5 if abs(abs(eta) - 1.0) < 1e-9 else 1.0
-            if window is not None:
-                apart = (phi - window.center + np.pi) % (2.0 * np.pi) - np.pi
-                if abs(apart) > 0.5 * (window.alpha + gauze.allowance) + 1e-9:
-                    continue
-            row.append((float(np.clip(eta, -1.0, 1.0)), share * step * radius))
-        rows.append(row)
+        eta = 2.0 * (turn - start) / (end - start) - 1.0
+        eta = eta[(eta >= -1.0 - 1e-9) & (eta <= 1.0 + 1e-9)]
+        shares = np.where(np.abs(np.abs(eta) - 1.0) < 1e-9, 0.5, 1.0)
+        rows.append(list(zip(np.clip(eta, -1.0, 1.0), shares * width, strict=True)))
     most = max(1, *(len(row) for row in rows))
     table = np.array([row + [(0.0, 0.0)] * (most - len(row)) for row in rows])
     return table[..., 0], table[..., 1]

@@ -114,7 +114,7 @@ def _attempt(
 ) -> Draft:
     profile, spec = subject.profile, request.tube
     if request.method == "optimal":
-        forward = FeForwardModel(spec) if request.verify and request.refine else None
+        forward = FeForwardModel(spec, request.model) if request.verify and request.refine else None
         plan = optimal_plan(request, profile, formula, say, forward)
     else:
         plan = paper_plan(request, profile, formula, say)

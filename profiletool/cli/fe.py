@@ -5,16 +5,23 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import asdict, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from profiletool.cli.console import Debug, Json, Quiet, exit_codes, progress_bar, speaker
+from profiletool.cli.rows import parameters_of, parameters_of_rows, with_signature
 from profiletool.cli.samples import Samples, Scheduler, Workers, check_samples, sampled
 from profiletool.errors import Infeasible, NotVerified, UnreadableInput, UsageError
+from profiletool.records.making import model_of
+from profiletool.records.model import PAPER_MODEL, ModelInputs
+from profiletool.records.options import MODEL
 
 if TYPE_CHECKING:
+    from profiletool.records.built import BuiltMisfit
+    from profiletool.records.design import Design
     from profiletool.records.fe import Verification
 
 _MOST_BAR = 20.0  # ten times what the tube bears
@@ -40,9 +47,11 @@ def joint(
     as_json: Json = False,
     quiet: Quiet = False,
     debug: Debug = False,
+    **options: Any,
 ) -> None:
     """Run finite elements of one joint, Root = F1 = 30 mm."""
     with exit_codes(debug):
+        model = model_of(options, PAPER_MODEL)
         _check_run(pressure, out, force)
         if not 0.0 <= alpha_center <= 360.0:
             raise UsageError(f"--alpha-center must be 0 to 360, not {alpha_center:g}")
@@ -55,14 +64,14 @@ def joint(
 
         spec = TubeSpec(outer_diameter_mm=diameter, wall_mm=wall)
         with _failures(UsageError), _bar(pressure, quiet) as progress:
-            actuator = joint_actuator(openF, alpha, alpha_center, spec)
+            actuator = joint_actuator(openF, alpha, alpha_center, spec, model)
             run = inflate(actuator, pressures_to(pressure), LYING, DOWN, progress=progress)
         found = run.verification
         what = (
             f"one joint: openF {openF:g} mm, alpha_closed {alpha:g} deg, "
-            f"alpha_center {alpha_center:g} deg"
+            f"alpha_center {alpha_center:g} deg{_beside(model)}"
         )
-        told = fe_json(found)
+        told = fe_json(found, _model_json(model))
         typer.echo(told if as_json else f"{what}\n{fe_text(found)}", nl=False)
         if out is not None:
             write.write_folder(out, outputs.fe_files(run, what, told), force)
@@ -79,9 +88,11 @@ def finger(
     as_json: Json = False,
     quiet: Quiet = False,
     debug: Debug = False,
+    **options: Any,
 ) -> None:
     """Run finite elements of the paper's three-joint finger (Table 2)."""
     with exit_codes(debug):
+        model = model_of(options, PAPER_MODEL)
         _check_run(pressure, out, force)
         from profiletool import outputs
         from profiletool.files import write
@@ -91,10 +102,10 @@ def finger(
 
         with _failures(UsageError), _bar(pressure, quiet) as progress:
             asked = pressures_to(pressure, 0.1)
-            run = inflate(finger_actuator(), asked, LYING, DOWN, progress=progress)
+            run = inflate(finger_actuator(model), asked, LYING, DOWN, progress=progress)
         found = run.verification
-        told = fe_json(found, ranges_json(found))
-        text = f"the paper's finger (Table 2)\n{fe_text(found)}{ranges_text(found)}"
+        told = fe_json(found, ranges_json(found) | _model_json(model))
+        text = f"the paper's finger (Table 2){_beside(model)}\n{fe_text(found)}{ranges_text(found)}"
         typer.echo(told if as_json else text, nl=False)
         if out is not None:
             title = "the paper's finger"
@@ -113,11 +124,18 @@ def verify(
     samples: Samples = None,
     workers: Workers = None,
     scheduler: Scheduler = None,
+    threads: Annotated[
+        bool,
+        typer.Option(
+            "--threads", help="Run the single threads of each sector, too, beside the smeared."
+        ),
+    ] = False,
     out: Out = None,
     force: Force = False,
     as_json: Json = False,
     quiet: Quiet = False,
     debug: Debug = False,
+    **options: Any,
 ) -> None:
     """Run finite elements of a whole actuator, and compare it with its target.
 
@@ -138,6 +156,7 @@ def verify(
 
         check_samples(samples, workers)
         design = load_design(file)
+        design = replace(design, model=model_of(options, design.model))
         most = design.pressure_bar if pressure is None else pressure
         _check_run(most, None, force)
         wrong = UnreadableInput if design.feasible else Infeasible
@@ -147,8 +166,10 @@ def verify(
         target = target_of(design, file)
         off = None if target is None else misfit_to(found.last.shape, target.points)
         beside = None if target is None else target.file
-        more = misfit_json(off, beside)
+        apart = _single_threads(design) if threads else None
+        more = misfit_json(off, beside) | _model_json(design.model, apart)
         text = fe_text(found) + compared_text(design, found, off, beside)
+        text += _model_text(design.model, apart)
         if samples is not None:
             points = None if target is None or pressure is not None else target.points
             both = sampled(design, run, points, samples, workers, scheduler, quiet)
@@ -163,6 +184,50 @@ def verify(
             write.write_folder(out, files, force)
             speaker(quiet)(f"written: {out}")
         _end(found)
+
+
+for _command in (joint, finger, verify):
+    with_signature(_command, parameters_of(_command), parameters_of_rows(MODEL))
+
+
+def _single_threads(design: Design) -> BuiltMisfit:
+    """Say how far the sheet's threads move the shape, at the design's own pressure.
+
+    Raises
+    ------
+    NotVerified
+    """
+    from fem.errors import FemError
+    from profiletool.verify.threads import with_threads
+
+    try:
+        off = with_threads(design).threads_off_mm
+    except FemError as error:
+        raise NotVerified(f"with single threads: {error}") from error
+    assert off is not None
+    return off
+
+
+def _beside(model: ModelInputs) -> str:
+    """Say what of the model is not the paper's."""
+    return f"; {model}" if str(model) else ""
+
+
+def _model_json(model: ModelInputs, apart: BuiltMisfit | None = None) -> dict[str, Any]:
+    """Make the entries of fe.json for a model that is not the paper's, and for single threads."""
+    entries = {} if model == PAPER_MODEL else {"model": asdict(model)}
+    return entries if apart is None else {**entries, "threads_off_mm": asdict(apart)}
+
+
+def _model_text(model: ModelInputs, apart: BuiltMisfit | None) -> str:
+    """Say what of the model is not the paper's, and what single threads do."""
+    text = f"not the paper's model: {model}\n" if str(model) else ""
+    if apart is not None:
+        text += (
+            f"single threads lie {apart.as_set:.2f} mm RMS off the smeared gauze, "
+            f"{apart.trimmed:.2f} once the pressure is set\n"
+        )
+    return text
 
 
 def _check_run(pressure: float | None, out: Path | None, force: bool) -> None:

@@ -8,13 +8,14 @@ from pathlib import Path
 from typing import Any
 
 from formula.rubber import read_rubber
-from profiletool.errors import UnreadableInput
+from profiletool.errors import UnreadableInput, UsageError
 from profiletool.files.read import read_file
 from profiletool.records.design import Design
+from profiletool.records.model import check_model
 from profiletool.records.rubber import law_of
 
 SCHEMA = "profiletool.design/2"
-_READ = (SCHEMA, "profiletool.design/1")  # the first has no `built` and no `trim`
+_READ = (SCHEMA, "profiletool.design/1")  # the first has no `built`, `trim` and `model`
 _DECIMALS = 6  # a nanometre; keeps the last bits of the arithmetic out of the file
 _MOST_BYTES = 5_000_000
 
@@ -114,7 +115,11 @@ def _check(design: Design, file: str) -> None:
     if not sane:
         raise UnreadableInput(f"{file}: no tube and gauze can have such sizes")
     try:
-        law_of(tube.rubber)
+        check_model(design.model)
+    except UsageError as error:
+        raise UnreadableInput(f"{file}: model: {error}") from error
+    try:
+        law_of(tube.rubber, design.model.nu)
     except ValueError as error:
         raise UnreadableInput(f"{file}: tube.rubber: {error}") from error
     if not design.joints:

@@ -155,6 +155,27 @@ class Built:
 
 
 @dataclass(frozen=True)
+class SectorThreads:
+    """The axial threads that stay whole at a joint, in one turn of the gauze.
+
+    Attributes
+    ----------
+    joint, turn : int
+        Numbers, from 1; the first turn is the inner one.
+    uncut : int
+        How many threads stay whole.
+    phase_deg : float
+        Angle on the tube from the start of the uncut sector to the first of them; 0 where there
+        is none.
+    """
+
+    joint: int
+    turn: int
+    uncut: int
+    phase_deg: float
+
+
+@dataclass(frozen=True)
 class TrimPoint:
     """Where the finished actuator stands at a pressure, with nominal parts.
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 from formula.rubber import RubberLaw
 from profiletool.errors import UnreadableInput
-from profiletool.records.built import Built, TrimPoint
+from profiletool.records.built import Built, BuiltMisfit, SectorThreads, TrimPoint
 from profiletool.records.frames import Pose
+from profiletool.records.model import ModelInputs
 from profiletool.records.side import Side
 
 TOWARD_DEG, AWAY_DEG = 270.0, 90.0  # alpha_center of a joint that bends toward the object, or away
@@ -236,6 +237,14 @@ class Design:
         The pressure to work at against the object; None where it is not computed.
     trim : tuple of TrimPoint
         Where the finished actuator stands at pressures about the planned one.
+    model : ModelInputs
+        What finite elements take.
+    threads : tuple of SectorThreads
+        The axial threads that stay whole, joint by joint, turn by turn, as the template's sheet
+        has them.
+    threads_off_mm : BuiltMisfit or None
+        How far these single threads move the object-facing line from that of the smeared gauze,
+        mm RMS; None where it is not computed.
     """
 
     source: Source
@@ -254,6 +263,9 @@ class Design:
     built: Built | None = None
     operate_bar: float | None = None
     trim: tuple[TrimPoint, ...] = ()
+    model: ModelInputs = field(default_factory=ModelInputs)
+    threads: tuple[SectorThreads, ...] = ()
+    threads_off_mm: BuiltMisfit | None = None
 
     @property
     def theta_uncertain(self) -> tuple[int, ...]:

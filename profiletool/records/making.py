@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from profiletool.errors import UsageError
 from profiletool.records.built import build_errors
-from profiletool.records.options import DESIGN, Option
+from profiletool.records.model import ModelInputs, check_model
+from profiletool.records.options import DESIGN, MODEL, Option
 from profiletool.records.request import Look, Request, ScaleRequest, TubeSpec
 
 if TYPE_CHECKING:
@@ -40,7 +41,12 @@ def request_of(file: Path, values: Mapping[str, Any], formula: Formula | None = 
     tube = TubeSpec()
     if formula is not None:
         tube = TubeSpec(formula.outer_diameter_mm, formula.wall_mm, rubber=formula.rubber)
-    parts: dict[str, Any] = {"scale": ScaleRequest(), "look": Look(), "tube": tube}
+    parts: dict[str, Any] = {
+        "scale": ScaleRequest(),
+        "look": Look(),
+        "tube": tube,
+        "model": ModelInputs(),
+    }
     own: dict[str, Any] = {}
     for name, value in values.items():
         holder, _, field = paths[name].rpartition(".")
@@ -69,6 +75,23 @@ def check_request(request: Request) -> None:
         raise UsageError("`wall_mm` must be less than half of `outer_diameter_mm`")
     if not 0.0 <= request.start_pct < request.end_pct <= 100.0:
         raise UsageError("`start_pct` and `end_pct` must be percentages, the first one the lower")
+    check_model(request.model)
+
+
+def model_of(values: Mapping[str, Any], base: ModelInputs) -> ModelInputs:
+    """Give the inputs of finite elements: values by field name, what is None as in ``base``.
+
+    Raises
+    ------
+    UsageError
+        A name is no input, or a value makes no sense.
+    """
+    unknown = sorted(set(values) - {row.field for row in MODEL})
+    if unknown:
+        raise UsageError(f"{unknown[0]!r} is no input of finite elements")
+    model = replace(base, **{name: value for name, value in values.items() if value is not None})
+    check_model(model)
+    return model
 
 
 def check_scale(scale: ScaleRequest) -> None:

@@ -218,7 +218,26 @@ DESIGN = (
         "Let finite elements correct the design (optimal; needs verify).", main=True,
         off=True,
     ),
+    Option(
+        "--nu", "model.nu", _RATIO,
+        "Poisson's ratio of the rubber (default: its own; the paper's 0.46).", least=0.0,
+        absent="the rubber's own",
+    ),
+    Option(
+        "--thread-factor", "model.thread_factor", _RATIO,
+        "Stiffness of a thread over that of the paper's (default: 1).", above=0.0,
+    ),
+    Option(
+        "--sector-extra", "model.sector_extra_deg", _DEG,
+        "What the threads at its ends add to a sector, deg (default: 6).", least=0.0,
+    ),
+    Option(
+        "--gravity", "model.gravity", ValueKind(str, str),
+        "Where gravity pulls on the object as pictured (default: none).",
+        metavar="none|down|up|level|DEG",
+    ),
 )  # fmt: skip
+MODEL = tuple(row for row in DESIGN if row.path.startswith("model."))
 # Fields of other records and commands that messages name.
 _OTHERS = {
     "kerf_mm": "--kerf", "out": "--out", "force": "--force", "pressure_bar": "--pressure",

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from profiletool.records.built import BuildErrors
+from profiletool.records.model import ModelInputs
 from profiletool.records.side import Side
 
 if TYPE_CHECKING:
@@ -148,6 +149,8 @@ class Request:
     build : BuildErrors
     verify, refine : bool
         Whether finite elements verify the design, and correct it before.
+    model : ModelInputs
+        What finite elements take.
     given : Picture, DrawnLine, Profile or None
         What a design is made from where there is no file.
     """
@@ -173,4 +176,5 @@ class Request:
     build: BuildErrors = field(default_factory=BuildErrors)
     verify: bool = True
     refine: bool = True
+    model: ModelInputs = field(default_factory=ModelInputs)
     given: Picture | DrawnLine | Profile | None = None

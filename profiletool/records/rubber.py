@@ -9,8 +9,14 @@ _SHEAR_MPA = 2e-4, 2e3  # from gels to hard plastics
 _MOST_BULK_MPA = 1e6
 
 
-def law_of(rubber: RubberLaw | None) -> Law:
+def law_of(rubber: RubberLaw | None, nu: float | None = None) -> Law:
     """Law of a rubber; None is the paper's.
+
+    Parameters
+    ----------
+    rubber : RubberLaw or None
+    nu : float, optional
+        Poisson's ratio at small strain in place of the rubber's own; the shear modulus stays.
 
     Raises
     ------
@@ -18,8 +24,12 @@ def law_of(rubber: RubberLaw | None) -> Law:
         There is no such law, or no rubber can have such constants.
     """
     if rubber is None:
-        return PAPER_RUBBER
-    made = law(rubber.law, rubber.constants)
+        made: Law = PAPER_RUBBER
+    else:
+        made = law(rubber.law, rubber.constants)
+    if nu is not None:
+        others = {key: value for key, value in made.constants.items() if key != "K"}
+        made = law(made.name, {**others, "nu": nu})
     low, high = _SHEAR_MPA
     if not low <= made.shear_modulus <= high:
         raise ValueError(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from profiletool.template.unroll import Variant
+from profiletool.joints.roll import Variant
 
 _CUT = (
     "Cut the blue lines only: they sever the axial threads. Do not remove the windows. "

@@ -8,11 +8,12 @@ from typing import Literal
 
 import numpy as np
 
+from profiletool.joints.roll import Roll, window_intervals
 from profiletool.joints.windows import FULL_CIRCLE
 from profiletool.records.design import Design, Joint
 from profiletool.records.units import FloatArray
 from profiletool.template.drawing import Box, Line, Text
-from profiletool.template.unroll import Roll, Slit, window_intervals
+from profiletool.template.unroll import Slit
 
 # Ways to write a label: height of the number, of openF/alpha, and where the latter stands. The
 # first that fits is taken.

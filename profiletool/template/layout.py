@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from profiletool.joints.roll import roll_of
 from profiletool.joints.windows import SeamChoice, seam_at
 from profiletool.records.design import Design, Joint
 from profiletool.records.units import FloatArray
@@ -17,7 +18,7 @@ from profiletool.template.kinds import KINDS, PLAIN, Wish
 from profiletool.template.labels import joint_labels
 from profiletool.template.margins import LEFT_MM, RIGHT_MM, gaps, margins
 from profiletool.template.notes import notes, title_of
-from profiletool.template.unroll import Slit, roll_of, slits
+from profiletool.template.unroll import Slit, slits
 
 NOTCH_MM = 3.0
 LEAST_NOTCH_MM = 0.5

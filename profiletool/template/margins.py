@@ -8,12 +8,12 @@ from itertools import pairwise
 
 import numpy as np
 
+from profiletool.joints.roll import Roll
 from profiletool.joints.windows import FULL_CIRCLE, SeamChoice
 from profiletool.records.design import Joint
 from profiletool.template.drawing import Line, Text, arrow, polyline
 from profiletool.template.kinds import TemplateKind
 from profiletool.template.labels import margin_numbers
-from profiletool.template.unroll import Roll
 
 # How far the marks beside the piece reach: with a tube of 250 mm they fill a landscape A4 page.
 LEFT_MM, RIGHT_MM = 14.5, 21.5

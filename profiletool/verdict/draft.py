@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from formula.theta import Formula
 from profiletool.bending.kinematics import deform
 from profiletool.joints.misfit import misfit
 from profiletool.joints.plan import Plan
+from profiletool.joints.threads import threads_of
 from profiletool.joints.windows import best_seam
 from profiletool.records.design import Design, Fit, FormulaRef, Gauze, Source, Tube
 from profiletool.records.frames import Shape
@@ -90,7 +91,7 @@ def _design(
     response = None if plan.by == "formula" else misfit(plan.bent, profile)
     seam = best_seam(layout.joints).seam_deg
     gauze = Gauze(spec.pitch_mm, spec.thread_mm, spec.turns, seam)
-    return Design(
+    design = Design(
         source=Source(
             file=request.file.name,
             sha256=digest_of(request),
@@ -122,4 +123,6 @@ def _design(
         verified=False,
         warnings=(),
         method=request.method,
+        model=request.model,
     )
+    return replace(design, threads=threads_of(design))

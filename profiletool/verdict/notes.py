@@ -21,6 +21,7 @@ from profiletool.records.request import TubeSpec
 from profiletool.subject.find import drawing_notes
 from profiletool.verdict.draft import Draft
 from profiletool.verdict.missed import Missed
+from profiletool.verdict.model import model_notes
 from profiletool.verify.cautions import BREAKS, strained, uncertain
 from profiletool.verify.check import Check
 
@@ -46,6 +47,7 @@ def notes_of(attempt: Draft, reasons: Sequence[str], misses: Sequence[Missed]) -
         *shape_warnings(attempt.best_shape, attempt.profile, request.tolerance_mm or DEPTH_MM),
         *_gauze_notes(attempt.plan.layout, design.gauze),
         *_fe_notes(attempt.check),
+        *model_notes(design, request.method == "optimal" and request.refine),
     )
 
 

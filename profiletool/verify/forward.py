@@ -20,6 +20,7 @@ from fem.solver import solve
 from profiletool.joints.correction.correct import CannotBend, Iterate
 from profiletool.joints.correction.parameters import PosedChain
 from profiletool.records.frames import Shape, base_axes
+from profiletool.records.model import PAPER_MODEL, ModelInputs
 from profiletool.records.request import TubeSpec
 from profiletool.records.units import FloatArray
 from profiletool.verify.lines import on_line, shape_of
@@ -30,8 +31,8 @@ from profiletool.verify.tube import tube_of
 class FeForwardModel:
     """A forward model by finite elements of the whole actuator."""
 
-    def __init__(self, spec: TubeSpec) -> None:
-        self._spec = spec
+    def __init__(self, spec: TubeSpec, model: ModelInputs = PAPER_MODEL) -> None:
+        self._spec, self._model = spec, model
         self._rates: tuple[Solution, Sensitivities] | None = None  # the last ones found
 
     def bend(
@@ -39,7 +40,8 @@ class FeForwardModel:
     ) -> tuple[Shape, Solution]:
         """Bend an actuator, from a similar one's state where that leads there."""
         try:
-            tube = tube_of(posed.chain, self._spec)
+            axes = base_axes(float(np.radians(posed.pose.heading_deg)), sign)
+            tube = tube_of(posed.chain, self._spec, self._model, axes)
             solution = self._solved(tube, near, posed.pressure)
         except NotConverged as error:
             raise CannotBend(shortly(error), error.reached) from error

@@ -9,6 +9,7 @@ import numpy as np
 from formula.theta import Formula, theta_deg
 from profiletool.bending.kinematics import Bend, deform
 from profiletool.joints.misfit import misfit_to
+from profiletool.joints.threads import threads_of
 from profiletool.joints.windows import best_seam
 from profiletool.records.design import Design, Fit, FormulaRef
 from profiletool.records.side import side_sign
@@ -38,7 +39,7 @@ def recomputed(design: Design, target: FloatArray, formula: Formula) -> Design:
     ]
     radius, sign = 0.5 * design.tube.outer_diameter_mm, side_sign(design.source.side)
     shape = deform(bends, length, radius, design.base_pose, sign)
-    return replace(
+    changed = replace(
         design,
         tube=replace(design.tube, root_mm=joints[0].centre_mm),
         gauze=replace(design.gauze, seam_deg=best_seam(joints).seam_deg),
@@ -47,5 +48,9 @@ def recomputed(design: Design, target: FloatArray, formula: Formula) -> Design:
         fit=Fit(formula=misfit_to(shape, target), fe=None),
         verified=False,
         sensitivity=(),
+        built=None,
+        operate_bar=None,
         trim=(),
+        threads_off_mm=None,
     )
+    return replace(changed, threads=threads_of(changed))

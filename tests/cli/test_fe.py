@@ -242,3 +242,23 @@ def test_what_was_reached_is_shown_where_a_run_does_not_converge(
     assert told["pressure_bar"] == [0.02, 0.04, 0.06]
     assert len(told["theta_deg"][0]) == 3
     assert (tmp_path / "stuck" / "theta_vs_pressure.csv").read_text().count("\n") == 4
+
+
+def test_a_stiffer_rubber_by_its_nu_bends_less_and_says_so() -> None:
+    less = json.loads(call(*JOINT, "--nu", 0.49, "--json").stdout)
+    usual = json.loads(call(*JOINT, "--json").stdout)
+    assert "model" not in usual
+    assert less["model"]["nu"] == 0.49
+    assert less["theta_deg"][0][-1] < 0.995 * usual["theta_deg"][0][-1]
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (("--nu", "0.5"), "--nu must be 0 to 0.4999"),
+        (("--gravity", "sideways"), "--gravity must be none, down, up, level or an angle"),
+        (("--thread-factor", "0"), "--thread-factor must be"),
+    ],
+)
+def test_inputs_of_the_model_that_make_no_sense(options: tuple[str, str], says: str) -> None:
+    assert says in error_of(call(*JOINT, *options))

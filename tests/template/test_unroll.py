@@ -7,9 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from profiletool.joints.roll import Roll, roll_of, window_intervals
 from profiletool.joints.windows import best_seam
 from profiletool.records.design import Gauze, Tube
-from profiletool.template.unroll import Roll, roll_of, sheet_size, slits, window_intervals
+from profiletool.template.unroll import sheet_size, slits
 from tests.template.designs import bulb, joint, long_tube, short_tube, skew
 from tests.template.geometry import angle_off
 
