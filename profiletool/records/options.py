@@ -243,7 +243,8 @@ _OTHERS = {
     "kerf_mm": "--kerf", "out": "--out", "force": "--force", "pressure_bar": "--pressure",
     "alpha_center_deg": "--alpha-center", "base": "--from", "runs": "--runs",
     "scheduler": "--scheduler", "workers": "--workers", "alpha_deg": "--alpha",
-    "openF_mm": "--openF", "theta_deg": "--theta",
+    "openF_mm": "--openF", "theta_deg": "--theta", "tip_mm": "--tip", "at_bar": "--at",
+    "angles": "--angles",
 }  # fmt: skip
 FLAGS: Mapping[str, str] = {**{row.field: row.flag for row in DESIGN}, **_OTHERS}
 

@@ -1,7 +1,7 @@
 """Single builds with errors of their own, by finite elements: the check of the linear figures.
 
 Rubber that is c times as stiff, at a pressure P, bends as the nominal one at P / c in a gauze that
-is 1 / c times as stiff.
+is 1 / c times as stiff, and 1 / c times as heavy.
 """
 
 from __future__ import annotations
@@ -112,13 +112,17 @@ def run_draw(design: Design, draw: BuildDraw, points: FloatArray) -> SampledBuil
     stiffer = 1.0 + draw.rubber
     actuator = actuator_of(drawn(design, draw))
     gauze = replace(actuator.gauze, stiffness=actuator.gauze.stiffness / stiffer)
+    weight = actuator.weight
+    if weight is not None:
+        rubber, cloth = weight.rubber / stiffer, weight.gauze / stiffer
+        weight = replace(weight, rubber=rubber, gauze=cloth)
     nominal = design.pressure_bar / BAR_PER_MPA
     off = draw.pressure_bar / BAR_PER_MPA / stiffer
     as_set = nominal / stiffer + off
     about = nominal * _ABOUT
     asked = sorted([as_set, *about[np.abs(about - as_set) > _APART * nominal].tolist()])
     try:
-        solution = solve(replace(actuator, gauze=gauze), asked, threads=1)
+        solution = solve(replace(actuator, gauze=gauze, weight=weight), asked, threads=1)
     except NotConverged as error:
         if not isinstance(error.solution, Solution):
             return SampledBuild(np.nan, np.nan, shortly(error))

@@ -30,12 +30,20 @@ def test_reads_back_what_it_wrote() -> None:
     assert from_json(to_json(design), "x") == design
 
 
+def test_files_of_the_first_schema_are_read() -> None:
+    new = ("built", "operate_bar", "model", "threads", "threads_off_mm", "trim")
+    tree = {key: value for key, value in TREE.items() if key not in new}
+    older = from_json(json.dumps(tree | {"schema": "profiletool.design/1"}), "x")
+    assert older == replace(load_design(SAMPLE), threads=())
+
+
 def test_has_the_fields_of_the_contract() -> None:
     assert list(TREE) == [
         "schema", "source", "tube", "gauze", "formula", "pressure_bar", "joints", "base_pose",
-        "fit", "feasible", "verified", "warnings", "method", "sensitivity",
+        "fit", "feasible", "verified", "warnings", "method", "sensitivity", "built", "operate_bar",
+        "model", "threads", "threads_off_mm", "trim",
     ]  # fmt: skip
-    assert TREE["schema"] == "profiletool.design/1"
+    assert TREE["schema"] == "profiletool.design/2"
     assert list(TREE["joints"][0]) == [
         "number", "F_mm", "openF_mm", "alpha_closed_deg", "alpha_center_deg", "theta_target_deg",
         "theta_formula_deg", "theta_fe_deg", "centre_mm", "theta_response_deg", "stretch_fe",
