@@ -204,23 +204,24 @@ def threads(mesh: Mesh, x: FloatArray) -> ThreadTension:
 
 
 def stretches(mesh: Mesh, x: FloatArray) -> FloatArray:
-    """Stretch of the rubber in each wrapped sector and window, in order: (2 joints + 1,).
+    """Stretch of the rubber about each joint: (joints,), or (1,) where there is none.
 
     The largest principal stretch, in the mean over the most stretched rubber there, as much as
     `_SAMPLE` of a cube as wide as the wall is thick. Its largest value at any point is none of the
-    tube's: at the corners of a cut it is singular, and grows as bricks get smaller.
+    tube's: at the corners of a cut it is singular, and grows as bricks get smaller. A joint
+    reaches to the middles of the sectors beside it, as its cut's edges strain both sides.
     """
     lam, volume = _points(mesh, x)
     sample = _SAMPLE * mesh.actuator.wall**3
-    found = np.ones(2 * len(mesh.actuator.windows) + 1)
-    for segment in range(len(found)):
-        own = mesh.segment == segment
-        values, weights = lam[own].ravel(), volume[own].ravel()
+    middles = [0.5 * (start + end) for start, end in mesh.actuator.wrapped[1:-1]]
+    owner = np.searchsorted(middles, 0.5 * (mesh.z[1:] + mesh.z[:-1]))
+    found = np.ones(len(middles) + 1)
+    for joint in np.unique(owner):
+        values, weights = (a[owner == joint].ravel() for a in (lam, volume))
         order = np.argsort(-values)
         before = np.cumsum(weights[order]) - weights[order]
         taken = np.clip(sample - before, 0.0, weights[order])
-        if taken.any():
-            found[segment] = float(taken @ values[order]) / float(taken.sum())
+        found[joint] = float(taken @ values[order]) / float(taken.sum())
     return found
 
 

@@ -32,8 +32,8 @@ class State:
         Unbalanced forces over the pressure's.
     least_J : float
         Smallest determinant of F.
-    stretches : (2 joints + 1,)
-        Of the rubber in each wrapped sector and window, in order; see `fem.measure.stretches`.
+    stretches : (joints,)
+        Of the rubber about each joint; see `fem.measure.stretches`.
     overlap : float, mm
         How deep the tube runs into itself, as the model has no contact; 0 where it does not. See
         `fem.touching.overlap`.
@@ -62,7 +62,7 @@ class State:
 
     @property
     def largest_stretch(self) -> float:
-        """Largest stretch of the rubber in any sector or window."""
+        """Largest stretch of the rubber about any joint."""
         return float(self.stretches.max())
 
     @property

@@ -84,7 +84,7 @@ class Joint:
     centre_mm : float
         Place of the cut's middle along the tube, from the clamped end.
     stretch_fe : float or None
-        Largest principal stretch of the rubber at the joint, by finite elements.
+        Stretch of the rubber at the joint, by finite elements; see `fem.measure.stretches`.
     """
 
     number: int
@@ -224,7 +224,8 @@ class Design:
     fit : Fit
         Distances off the profile.
     feasible, verified : bool
-        Whether it is within the limits; whether finite elements bent it up to its pressure.
+        Whether it is within the limits; whether finite elements bent these very numbers up to
+        their pressure and a little further, clear of itself.
     warnings : tuple of str
         What its user should know.
     method : {"optimal", "paper"}

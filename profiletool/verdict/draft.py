@@ -13,6 +13,7 @@ from profiletool.joints.plan import Plan
 from profiletool.joints.threads import threads_of
 from profiletool.joints.windows import best_seam
 from profiletool.records.design import Design, Fit, FormulaRef, Gauze, Source, Tube
+from profiletool.records.fe import FeState
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request
@@ -55,9 +56,15 @@ class Draft:
         return self.subject.profile
 
     @property
+    def bent(self) -> FeState | None:
+        """The tube at its operating pressure; None where finite elements did not get there."""
+        run = None if self.check is None else self.check.run
+        return run.verification.last if run is not None and run.verification.converged else None
+
+    @property
     def best_shape(self) -> Shape:
         """The tube as finite elements bend it, else as the joints were chosen by."""
-        return (self.check.shape if self.check is not None else None) or self.plan.bent
+        return self.plan.bent if self.bent is None else self.bent.shape
 
 
 def attempt_of(request: Request, subject: Subject, formula: Formula, plan: Plan) -> Draft:

@@ -11,7 +11,6 @@ import numpy as np
 from profiletool.bending.kinematics import meets_itself
 from profiletool.joints.bounds import wrap_mm
 from profiletool.records.design import Design, named
-from profiletool.records.fe import FeState
 from profiletool.records.request import Request
 from profiletool.verdict.draft import Draft
 
@@ -25,7 +24,7 @@ def holding(attempt: Draft) -> Draft:
     A tube that runs into itself was bent through itself, and numbers that cannot be built were
     bent in place of those that will be.
     """
-    check, bent = attempt.check, _bent(attempt)
+    check, bent = attempt.check, attempt.bent
     if check is None or bent is None:
         return attempt
     off = off_steps(attempt.design, attempt.request)
@@ -44,16 +43,9 @@ def broken(attempt: Draft) -> tuple[str, ...]:
     return (*_curled(attempt), *_unbuilt(attempt.design, attempt.request))
 
 
-def _bent(attempt: Draft) -> FeState | None:
-    """Give the state at the operating pressure; None where finite elements did not get there."""
-    run = None if attempt.check is None else attempt.check.run
-    reached = run is not None and run.verification.converged
-    return run.verification.last if run is not None and reached else None
-
-
 def _curled(attempt: Draft) -> Iterator[str]:
     """Say that the tube runs into itself: by finite elements, else by what it was chosen by."""
-    bent = _bent(attempt)
+    bent = attempt.bent
     if meets_itself(attempt.best_shape) if bent is None else bent.touches:
         by = f" by {bent.overlap_mm:.1f} mm" if bent is not None else ""
         yield (

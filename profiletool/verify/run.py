@@ -205,7 +205,7 @@ def _state(
         shape=placed_shape(found.mesh, state, place),
         phalanges=place(np.array([sector.centre for sector in state.sectors])),
         air_ml=1e-3 * (state.volume - found.states[0].volume),
-        joint_stretch=tuple(float(stretch) for stretch in state.stretches[1::2]),
+        joint_stretch=tuple(state.stretches.tolist()[: len(theta_deg)]),
         largest_stretch=state.largest_stretch,
         slack_share=state.threads.slack_share,
         least_J=state.least_J,

@@ -60,7 +60,7 @@ def check_random(seed):
 
 
 def test_random_tubes():
-    found = [truth for seed in (1, 9) for truth in check_random(seed)]
+    found = [truth for seed in (1, 3) for truth in check_random(seed)]
     assert min(found) < -SURE_MM < SURE_MM < max(found)
 
 

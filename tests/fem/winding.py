@@ -68,12 +68,12 @@ def depth_by_sections(arcs: Sequence[Arc], radius: float) -> float:
     """
     length = sum(arc.length for arc in arcs)
     along = wound(arcs, np.linspace(0.0, length, int(length) + 1))
-    fine = wound(arcs, np.linspace(0.0, length, 8 * int(length) + 1))
+    fine = wound(arcs, np.linspace(0.0, length, 4 * int(length) + 1))
     tangent = fine.rotation[..., 2]
     disc = np.concatenate([along.surface(f * radius, 48)[[0, -1]] for f in (0.2, 0.4, 0.6, 0.8)])
-    skin = along.surface(radius, 72)
+    skin = along.surface(radius, 40)
     points = np.concatenate([skin.reshape(-1, 3), disc.reshape(-1, 3)])
-    own = np.repeat(along.s, 72)
+    own = np.repeat(along.s, 40)
     own = np.concatenate([own, np.tile(np.repeat([0.0, length], 48), 4)])
     height = points @ tangent.T - (fine.centre * tangent).sum(axis=1)
     row, k = np.nonzero((height[:, :-1] > 0.0) != (height[:, 1:] > 0.0))
