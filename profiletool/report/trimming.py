@@ -7,6 +7,7 @@ from math import hypot
 
 from profiletool.records.built import TrimPoint
 from profiletool.records.design import Design
+from profiletool.records.options import FLAGS
 from profiletool.report.markup import Markup, joined, signed, table, tag
 from profiletool.report.steps import Step, origin_of
 from profiletool.template.notes import CYCLES
@@ -79,14 +80,15 @@ def _steps(design: Design, most_bar: float) -> Iterator[Step]:
 def _setting(design: Design, planned: TrimPoint) -> Iterator[Markup]:
     x, y = planned.tip_mm
     bar = planned.pressure_bar
+    tip, at, angles = (FLAGS[name] for name in ("tip_mm", "at_bar", "angles"))
     yield tag(
         "p",
         "Stiffer rubber or a thicker wall acts as less pressure would, softer rubber as more. Find "
         "the row of the table where the actuator stands, and set what its last column says. To "
         "interpolate, and to see whether a joint is off by itself, take ",
-        tag("code", f"profiletool trim design.json --tip {x:.1f},{y:.1f} --at {bar:.2f}"),
+        tag("code", f"profiletool trim design.json {tip} {x:.1f},{y:.1f} {at} {bar:.2f}"),
         " with the tip that you measured, or ",
-        tag("code", "--angles FILE.csv"),
+        tag("code", f"{angles} FILE.csv"),
         " with the angles.",
     )
     if design.trim[-1].pressure_bar <= bar:

@@ -41,7 +41,7 @@ def test_has_the_fields_of_the_contract() -> None:
     assert list(TREE) == [
         "schema", "source", "tube", "gauze", "formula", "pressure_bar", "joints", "base_pose",
         "fit", "feasible", "verified", "warnings", "method", "sensitivity", "built", "operate_bar",
-        "model", "threads", "threads_off_mm", "trim",
+        "trim", "model", "threads", "threads_off_mm",
     ]  # fmt: skip
     assert TREE["schema"] == "profiletool.design/2"
     assert list(TREE["joints"][0]) == [
