@@ -29,6 +29,8 @@ from profiletool.records.units import BAR_PER_MPA, FloatArray
 # Of the square that errors cost, against that of the nominal distance: a shape that is off for
 # certain is worse than one that may be.
 BUILT_WEIGHT = 1.0 / 36.0
+# More of it where a choice is polished, for there is much that the shape alone leaves open.
+POLISHED_WEIGHT = 1.0 / 9.0
 _ALPHA_STEP, _OPENF_STEP, _PRESSURE_STEP = 1e-3, 1e-2, 1e-4  # of differences: rad, mm, MPa
 _LEAST = 1e-9  # keeps roots smooth where nothing is off
 
@@ -149,10 +151,13 @@ class Expected:
     ----------
     model : Model
     sizes : ErrorSizes
+    weight : float
+        Of the squares in the rows.
     """
 
     model: Model
     sizes: ErrorSizes
+    weight: float = BUILT_WEIGHT
 
     def rms_mm(self, posed: PosedChain, shape: Shape, closest: ClosestPoints) -> float:
         """Give the expected motion of the line, RMS over builds and points, without any weight."""
@@ -183,7 +188,7 @@ class Expected:
         jacobian[:n, 2 * n] = lever * (own[3] - own[4]) / dP
         jacobian[n, 2 * n] = by_slope @ (slope[3] - slope[4]) / dP
         rows = ExpectedRows(np.append(lever * own[0], common), jacobian)
-        return rows.scaled(float(np.sqrt(BUILT_WEIGHT)))
+        return rows.scaled(float(np.sqrt(self.weight)))
 
     def _joints(
         self, posed: PosedChain, alpha: FloatArray, pressure: FloatArray | float

@@ -107,6 +107,7 @@ def test_what_lies_a_little_ahead_is_told(stepped: Solution) -> None:
     assert len(far.states) == 2
 
 
+@pytest.mark.slow
 def test_a_limit_below_the_asked_pressure_is_not_ahead() -> None:
     run = solve(balloon(), [0.5], COARSE, Options(ahead=0.02))
     assert run.critical is not None

@@ -101,7 +101,7 @@ def test_energy_is_balanced_and_derivatives_hold_under_gravity() -> None:
     assert found.states[-1].energy_error < 1e-3
     assert abs(found.states[-1].theta[0] - light.states[-1].theta[0]) > 1e-3
     rates, step = sensitivities(found.mesh, found.states[-1].x, 0.05, threads=1), 0.02
-    _, _, wraps, (wall,) = families(1)
+    _, _, wraps, (wall,), _ = families(1)
     for rate, parameter in [(rates.wrapped[0], wraps[0]), (rates.wall, wall)]:
         ends = [
             solve_near(parameter.change(joint, sign * step), found, 0.05, threads=1).states[-1]

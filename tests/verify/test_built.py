@@ -121,6 +121,7 @@ def points(design: Design) -> FloatArray:
     return np.asarray(line + np.array([0.1, 0.0]))
 
 
+@pytest.mark.slow
 def test_single_builds_by_finite_elements_are_as_the_fields_say(
     design: Design, points: FloatArray
 ) -> None:

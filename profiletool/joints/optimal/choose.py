@@ -15,7 +15,7 @@ from profiletool.bending.model import Chain, Model
 from profiletool.errors import Infeasible, NoObject
 from profiletool.joints.bounds import Limits, cuts_of, limits_of
 from profiletool.joints.correction.parameters import PosedChain
-from profiletool.joints.expected import BUILT_WEIGHT, Aim, ErrorSizes, Expected
+from profiletool.joints.expected import BUILT_WEIGHT, POLISHED_WEIGHT, Aim, ErrorSizes, Expected
 from profiletool.joints.misfit import is_good, score
 from profiletool.joints.optimal.lines import FAR, FINE, WIDE
 from profiletool.joints.optimal.polish import Goal, Polished, at_bound, goal_of, judge, polish
@@ -129,7 +129,7 @@ def choose(
             "take another `side` or stretch, or a smaller `tolerance_mm`"
         )
     limits, cuts = limits_of(model, spec, options.base_free), cuts_of(model, spec)
-    expected = None if options.sizes is None else Expected(model, options.sizes)
+    expected = None if options.sizes is None else Expected(model, options.sizes, POLISHED_WEIGHT)
     aim = Aim(options.interference_mm, expected)
     reached = profile
     for _ in range(_CUTS):
