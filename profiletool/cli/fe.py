@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from profiletool.records.built import BuiltMisfit
     from profiletool.records.design import Design
     from profiletool.records.fe import Verification
+    from profiletool.subject.recall import Target
 
 _MOST_BAR = 20.0  # ten times what the tube bears
 
@@ -147,9 +148,8 @@ def verify(
         from profiletool import outputs
         from profiletool.files import write
         from profiletool.files.design_json import load_design
-        from profiletool.joints.misfit import misfit_to
         from profiletool.report.dossier import formula_marks
-        from profiletool.report.fe import compared_text, fe_json, fe_text, misfit_json
+        from profiletool.report.fe import fe_json
         from profiletool.report.sampled import samples_text, samples_tree
         from profiletool.subject.recall import target_of
         from profiletool.verify.run import run_design
@@ -164,12 +164,7 @@ def verify(
             run = run_design(design, most, progress)
         found = run.verification
         target = target_of(design, file)
-        off = None if target is None else misfit_to(found.last.shape, target.points)
-        beside = None if target is None else target.file
-        apart = _single_threads(design) if threads else None
-        more = misfit_json(off, beside) | _model_json(design.model, apart)
-        text = fe_text(found) + compared_text(design, found, off, beside)
-        text += _model_text(design.model, apart)
+        more, text = _compared(design, found, target, threads)
         if samples is not None:
             points = None if target is None or pressure is not None else target.points
             both = sampled(design, run, points, samples, workers, scheduler, quiet)
@@ -184,6 +179,21 @@ def verify(
             write.write_folder(out, files, force)
             speaker(quiet)(f"written: {out}")
         _end(found)
+
+
+def _compared(
+    design: Design, found: Verification, target: Target | None, threads: bool
+) -> tuple[dict[str, Any], str]:
+    """Compare a run with its target, and the smeared gauze with single threads: JSON and text."""
+    from profiletool.joints.misfit import misfit_to
+    from profiletool.report.fe import compared_text, fe_text, misfit_json
+
+    off = None if target is None else misfit_to(found.last.shape, target.points)
+    beside = None if target is None else target.file
+    apart = _single_threads(design) if threads else None
+    more = misfit_json(off, beside) | _model_json(design.model, apart)
+    text = fe_text(found) + compared_text(design, found, off, beside)
+    return more, text + _model_text(design.model, apart)
 
 
 for _command in (joint, finger, verify):
