@@ -29,11 +29,14 @@ class Parameter:
     change: Callable[[Actuator, float], Actuator]
 
 
-def families(count: int, *, apart: bool = False) -> tuple[tuple[Parameter, ...], ...]:
+def families(
+    count: int, *, apart: bool = False, tube: bool = True
+) -> tuple[tuple[Parameter, ...], ...]:
     """Families of parameters that can be changed at once: no two have a ring in common.
 
     In order: each window's alpha, all windows' lengths, all wrapped sectors' lengths, the wall,
-    the gauze; for ``count`` windows; each parameter by itself where they are to be kept ``apart``.
+    the gauze; for ``count`` windows; each parameter by itself where they are to be kept ``apart``;
+    wall and gauze only where the whole ``tube`` is asked for.
     """
     windows, wrapped = range(1, 2 * count, 2), range(0, 2 * count + 1, 2)
     together: tuple[tuple[Parameter, ...], ...] = (
@@ -41,9 +44,10 @@ def families(count: int, *, apart: bool = False) -> tuple[tuple[Parameter, ...],
         *((Parameter(None, ANGLE_STEP, _alpha(k // 2)),) for k in windows),
         tuple(Parameter(k, LENGTH_STEP, _stretch(k)) for k in windows),
         tuple(Parameter(k, LENGTH_STEP, _stretch(k)) for k in wrapped),
-        (Parameter(None, LENGTH_STEP, _thicken),),
-        (Parameter(None, SHARE_STEP, _stiffen),),
     )
+    if tube:
+        wall, gauze = (LENGTH_STEP, _thicken), (SHARE_STEP, _stiffen)
+        together += tuple((Parameter(None, step, change),) for step, change in (wall, gauze))
     return tuple((p,) for family in together for p in family) if apart else together
 
 

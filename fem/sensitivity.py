@@ -118,8 +118,17 @@ def flow_to(rates: Sensitivities, known: Actuator, new: Actuator, rise: float) -
     return flow
 
 
+def _unknown(like: Rate) -> Rate:
+    return Rate(*(np.nan * value for value in vars(like).values()))
+
+
 def _by_parameter(rates: Sequence[Rate], count: int) -> Sensitivities:
-    """Sort rates: by pressure, ``count`` sectors and cuts, wrapped lengths, wall, gauze."""
+    """Sort rates: by pressure, ``count`` sectors and cuts, wrapped lengths, wall, gauze.
+
+    The last two are not known where they are not there.
+    """
+    if len(rates) == 3 * count + 2:
+        rates = [*rates, *[_unknown(rates[0])] * 2]
     return Sensitivities(
         pressure=rates[0],
         alpha=tuple(rates[1 : count + 1]),
@@ -137,6 +146,7 @@ def sensitivities(
     threads: int = 2,
     *,
     angles: bool = True,
+    tube: bool = True,
     extra: Sequence[MakeItem] = (),
 ) -> Sensitivities:
     """Differentiate an equilibrium.
@@ -151,6 +161,8 @@ def sensitivities(
     angles : bool
         Whether to differentiate the joint angles and the volume too, half of the work; they are
         NaN otherwise.
+    tube : bool
+        Whether to differentiate by the wall and the gauze, too; those are NaN otherwise.
     extra : sequence of MakeItem
         What contributes to the energy beside bricks, gauze and air; see `fem.items`.
 
@@ -176,7 +188,7 @@ def sensitivities(
             if np.linalg.norm(forces.residual(pressure)) > 1e-4 * push:
                 raise FemError("these positions are not in equilibrium")
             # What is fixed in space may feel a segment's length all along the tube.
-            changes = families(count, apart=bool(extra))
+            changes = families(count, apart=bool(extra), tube=tube)
             rhs = [forces.volume_gradient]
             for family in changes:
                 rhs += _pulls(system, x, pressure, family)

@@ -13,7 +13,7 @@ import typer
 
 from profiletool.cli.console import Debug, Json, Quiet, exit_codes, progress_bar, speaker
 from profiletool.cli.rows import parameters_of, parameters_of_rows, with_signature
-from profiletool.cli.samples import Samples, Scheduler, Workers, check_samples, sampled
+from profiletool.cli.samples import SampleOptions, sampled, taken
 from profiletool.errors import Infeasible, NotVerified, UnreadableInput, UsageError
 from profiletool.records.making import model_of
 from profiletool.records.model import PAPER_MODEL, ModelInputs
@@ -122,9 +122,6 @@ def verify(
         float | None,
         typer.Option(help="Highest pressure, bar (default: the design's own); ten equal steps."),
     ] = None,
-    samples: Samples = None,
-    workers: Workers = None,
-    scheduler: Scheduler = None,
     threads: Annotated[
         bool,
         typer.Option(
@@ -154,7 +151,7 @@ def verify(
         from profiletool.subject.recall import target_of
         from profiletool.verify.run import run_design
 
-        check_samples(samples, workers)
+        asked = taken(options)
         design = load_design(file)
         design = replace(design, model=model_of(options, design.model))
         most = design.pressure_bar if pressure is None else pressure
@@ -165,9 +162,9 @@ def verify(
         found = run.verification
         target = target_of(design, file)
         more, text = _compared(design, found, target, threads)
-        if samples is not None:
+        if asked.samples is not None:
             points = None if target is None or pressure is not None else target.points
-            both = sampled(design, run, points, samples, workers, scheduler, quiet)
+            both = sampled(design, run, points, asked, quiet)
             more |= samples_tree(*both)
             text += samples_text(*both)
         told = fe_json(found, more)
@@ -196,8 +193,11 @@ def _compared(
     return more, text + _model_text(design.model, apart)
 
 
-for _command in (joint, finger, verify):
+for _command in (joint, finger):
     with_signature(_command, parameters_of(_command), parameters_of_rows(MODEL))
+with_signature(
+    verify, parameters_of(verify), parameters_of(SampleOptions), parameters_of_rows(MODEL)
+)
 
 
 def _single_threads(design: Design) -> BuiltMisfit:

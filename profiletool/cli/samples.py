@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Annotated
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -17,22 +18,30 @@ if TYPE_CHECKING:
     from profiletool.records.units import FloatArray
     from profiletool.verify.run import Run
 
-Samples = Annotated[
-    int | None,
-    typer.Option(
-        help="Run so many builds with errors drawn at random too, and compare them with what the "
-        "design expects: some seconds each.",
-    ),
-]
-Workers = Annotated[
-    int | None,
-    typer.Option(help="Processes for the samples, one thread each (default: one a core)."),
-]
-Scheduler = Annotated[
-    str | None,
-    typer.Option(help="A dask.distributed scheduler for them, tcp://HOST:PORT, to run on instead."),
-]
 _MOST = 100_000
+
+
+@dataclass(frozen=True)
+class SampleOptions:
+    """How many builds to sample, and on what to run them."""
+
+    samples: Annotated[
+        int | None,
+        typer.Option(
+            help="Run so many builds with errors drawn at random too, and compare them with what "
+            "the design expects: some seconds each.",
+        ),
+    ] = None
+    workers: Annotated[
+        int | None,
+        typer.Option(help="Processes for the samples, one thread each (default: one a core)."),
+    ] = None
+    scheduler: Annotated[
+        str | None,
+        typer.Option(
+            help="A dask.distributed scheduler for them, tcp://HOST:PORT, to run on instead."
+        ),
+    ] = None
 
 
 def cores() -> int:
@@ -42,26 +51,27 @@ def cores() -> int:
     return os.cpu_count() or 1
 
 
-def check_samples(samples: int | None, workers: int | None) -> None:
-    """Refuse numbers that make no sense.
+def taken(options: dict[str, Any]) -> SampleOptions:
+    """Take the options of samples out of a command's, and check them.
 
     Raises
     ------
     UsageError
     """
+    asked = SampleOptions(**{row.name: options.pop(row.name) for row in fields(SampleOptions)})
+    samples, workers = asked.samples, asked.workers
     if samples is not None and not 2 <= samples <= _MOST:
         raise UsageError(f"--samples must be 2 to {_MOST}, not {samples}")
     if workers is not None and not 1 <= workers <= 1024:
         raise UsageError(f"--workers must be 1 to 1024, not {workers}")
+    return asked
 
 
 def sampled(
     design: Design,
     run: Run,
     target: FloatArray | None,
-    samples: int,
-    workers: int | None,
-    scheduler: str | None,
+    asked: SampleOptions,
     quiet: bool,
 ) -> tuple[SampledBuilds, Built]:
     """Run sampled builds of a design; give them and the figures to first order.
@@ -103,9 +113,13 @@ def sampled(
             design,
             points,
             build,
-            samples,
+            asked.samples or 0,
             lambda tasks: run_all(
-                tasks, store, workers=workers or cores(), scheduler=scheduler, progress=told
+                tasks,
+                store,
+                workers=asked.workers or cores(),
+                scheduler=asked.scheduler,
+                progress=told,
             ),
         )
     return found, built_of(design, fields, build)

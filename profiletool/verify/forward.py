@@ -74,7 +74,7 @@ def rates_of(iterate: Iterate[Solution]) -> Sensitivities:
     """Differentiate an iterate's state."""
     solution = iterate.state
     x, pressure = solution.states[-1].x, iterate.posed.pressure
-    return sensitivities(solution.mesh, x, pressure, angles=False)
+    return sensitivities(solution.mesh, x, pressure, angles=False, tube=False)
 
 
 def motion_of(iterate: Iterate[Solution], rates: Sensitivities) -> FloatArray:
