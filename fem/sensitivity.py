@@ -187,8 +187,7 @@ def sensitivities(
             push = pressure * np.linalg.norm(forces.volume_gradient)
             if np.linalg.norm(forces.residual(pressure)) > 1e-4 * push:
                 raise FemError("these positions are not in equilibrium")
-            # What is fixed in space may feel a segment's length all along the tube.
-            changes = families(count, apart=bool(extra), tube=tube)
+            changes = families(count, apart=bool(extra), tube=tube)  # see `_pulls`
             rhs = [forces.volume_gradient]
             for family in changes:
                 rhs += _pulls(system, x, pressure, family)
@@ -222,6 +221,7 @@ def _pulls(
 
     All are changed at once: a segment's layers alone feel its own parameter, all others move
     along as they are.
+    What is fixed in space may feel a segment's length all along the tube; then each is alone.
     """
     if not family:
         return []
