@@ -169,8 +169,6 @@ def sensitivities(
     Returns
     -------
     Sensitivities
-        By the pressure, each uncut sector, each cut's length, each wrapped length, the wall
-        and the gauze.
 
     Raises
     ------
@@ -192,11 +190,10 @@ def sensitivities(
             for family in changes:
                 rhs += _pulls(system, x, pressure, family)
             flows = inverse.solve(np.array(rhs))
-            rates = [_rate(system, x, forces, flows[0], None, angles)]
-            every = [change for family in changes for change in family]
-            rates += [
+            every = [None, *(change for family in changes for change in family)]
+            rates = [
                 _rate(system, x, forces, du, change, angles)
-                for du, change in zip(flows[1:], every, strict=True)
+                for du, change in zip(flows, every, strict=True)
             ]
             return _by_parameter(rates, count)
         finally:
