@@ -103,6 +103,7 @@ def worker(start: Start, scheduler: str, **variables: str) -> subprocess.Popen[b
     return start("worker", scheduler, *options, **variables)
 
 
+@pytest.mark.slow
 def test_a_worker_that_is_killed_loses_its_own_run_only(
     scheduler: str, start: Start, calls: Path, tmp_path: Path
 ) -> None:

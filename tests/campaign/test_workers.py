@@ -97,6 +97,7 @@ def test_each_is_kept_as_soon_as_it_comes(calls: Path, store: JointStore) -> Non
     run_all(TASKS, store, workers=2, progress=kept)
 
 
+@pytest.mark.slow
 def test_real_runs_are_the_same_bit_for_bit_on_processes(store: JointStore) -> None:
     tasks = [Task(o, 120.0, 12.0, 1.5, PAPER_RUBBER, (0.1,)) for o in (4.0, 6.0)]
     found = run_all(tasks, Store(store.folder, JOINT_RUN), workers=2)
@@ -200,6 +201,7 @@ def working(calls: Path) -> set[int]:
 
 
 @kills
+@pytest.mark.slow
 def test_a_campaign_killed_at_any_moment_goes_on(calls: Path, store: JointStore) -> None:
     tasks, chance = [fake.task(n) for n in range(12)], random.Random(1)
     for stop in (1, 4, 8):

@@ -244,6 +244,7 @@ def test_what_was_reached_is_shown_where_a_run_does_not_converge(
     assert (tmp_path / "stuck" / "theta_vs_pressure.csv").read_text().count("\n") == 4
 
 
+@pytest.mark.slow
 def test_a_stiffer_rubber_by_its_nu_bends_less_and_says_so() -> None:
     less = json.loads(call(*JOINT, "--nu", 0.49, "--json").stdout)
     usual = json.loads(call(*JOINT, "--json").stdout)

@@ -52,7 +52,10 @@ def test_exit_6_for_a_shape_that_is_not_good_enough(tmp_path: Path) -> None:
 @pytest.mark.usefixtures("few_files", "coarse_mesh")
 @pytest.mark.parametrize(
     ("failing", "says"),
-    [(ending_early, "limit point"), (never_converging, "no equilibrium found")],
+    [
+        pytest.param(ending_early, "limit point", marks=pytest.mark.slow),
+        (never_converging, "no equilibrium found"),
+    ],
 )
 @pytest.mark.parametrize("method", [pytest.param("paper", marks=pytest.mark.slow), "optimal"])
 def test_exit_7_writes_the_design_marked_not_verified(

@@ -74,6 +74,7 @@ def test_a_mask_of_another_size_is_refused(tmp_path: Path) -> None:
     assert missing.exit_code == 3
 
 
+@pytest.mark.slow
 def test_what_was_asked_for_is_in_the_design_and_the_report(tmp_path: Path) -> None:
     file = drawn(tmp_path / "a.png", [turned(PEAR, 30.0)])
     (tmp_path / "look.toml").write_text(

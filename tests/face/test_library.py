@@ -93,6 +93,7 @@ def test_arrays_that_are_neither(array: np.ndarray, error: type[Exception], says
         design(array)
 
 
+@pytest.mark.slow
 def test_the_steps_one_by_one(made: Result, samples: Path) -> None:
     profile = find_subject(samples / "egg.png").profile
     assert isinstance(profile, Profile)

@@ -91,6 +91,7 @@ def test_the_path_goes_on_past_the_limit_by_volume(
     assert max(reached) <= run.critical.pressure * (1.0 + 1e-6)
 
 
+@pytest.mark.slow
 def test_what_lies_a_little_ahead_is_told(stepped: Solution) -> None:
     assert stepped.critical is not None
     limit = stepped.critical.pressure

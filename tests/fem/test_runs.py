@@ -216,6 +216,7 @@ def test_the_plug_stays_rigid_on_uneven_bricks() -> None:
     np.testing.assert_allclose(apart[1], apart[0], atol=1e-9)
 
 
+@pytest.mark.slow
 def test_deterministic_to_the_last_bit_for_any_number_of_threads() -> None:
     actuator = chain(8.0, [14.0, 14.0], [6.0, 4.0], np.radians([100.0, 120.0]))
     size = replace(DEFAULT_MESH, edge=1.0)

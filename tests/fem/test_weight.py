@@ -93,6 +93,7 @@ def test_gravity_out_of_the_plane_takes_the_whole_tube() -> None:
     assert not make_mesh(plain((1.0, 0.0, 0.0), Gauze()), SIZE).half
 
 
+@pytest.mark.slow
 def test_energy_is_balanced_and_derivatives_hold_under_gravity() -> None:
     heavy = Weight((0.0, 1.0, 0.0), 40.0 * RUBBER, GAUZE)
     joint = chain(6.0, [8.0], [5.0], [np.radians(100.0)], weight=heavy)

@@ -107,6 +107,7 @@ def target_of(shape: Shape) -> Profile:
     return Profile(points, s, heading, nothing, nothing.astype(bool), "left", None)
 
 
+@pytest.mark.slow
 def test_a_target_made_by_fe_is_reached(bent: Iterate[Solution]) -> None:
     off = np.array([0.3, 0.3, 1.0, 1.5, -0.01, 0.0, -0.3])
     said: list[str] = []

@@ -100,6 +100,7 @@ def test_hints_that_do_not_fit(hint: Hint, words: str) -> None:
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.slow
 def test_a_point_beside_the_object_finds_nothing() -> None:
     with pytest.raises(NoObject):
         find_silhouette(laid(disc(230, 110, 40)), hint=Hint(point=(40, 200)))

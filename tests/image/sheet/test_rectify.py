@@ -123,6 +123,7 @@ def test_height_is_as_sure_as_is_said(shot: Shot, focal_error: float | None, sur
     assert unsure == (made.camera.height_share > 0.15)
 
 
+@pytest.mark.slow
 def test_measured_distance_stands_in_for_an_unknown_one() -> None:
     shot = replace(SMALL, tilt=0.0)
     blind = trial(sphere(30), shot, rng(), focal_error=None)

@@ -186,6 +186,7 @@ def profile_like(facing: FloatArray) -> Profile:
 
 @settings(max_examples=6)
 @given(actuators())
+@pytest.mark.slow
 def test_it_is_at_least_as_good_as_the_actuator_that_the_profile_comes_from(chain: Chain) -> None:
     pose = Pose(0.0, 0.0, -90.0)
     made = MODEL.shape(chain, 0.17, pose, 1.0)
@@ -196,6 +197,7 @@ def test_it_is_at_least_as_good_as_the_actuator_that_the_profile_comes_from(chai
     assert choice.misfit.rms_mm <= max(misfit(made, profile).rms_mm + 0.02, 0.25)
 
 
+@pytest.mark.slow
 def test_a_curve_too_tight_is_named_with_its_place() -> None:
     corner = bent_line((50.0, 0.0), (3.0, 90.0), (50.0, 0.0))
     choice = choose(corner, MODEL, SPEC)

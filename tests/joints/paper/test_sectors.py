@@ -115,6 +115,7 @@ def pear() -> tuple[Profile, FloatArray]:
 
 @settings(max_examples=15)
 @given(st.floats(-np.pi, np.pi), st.floats(-500, 500))
+@pytest.mark.slow
 def test_invariant_under_rotation_and_shift(angle: float, shift: float) -> None:
     profile, expected = pear()
     c, s = np.cos(angle), np.sin(angle)
