@@ -66,6 +66,7 @@ def test_ends_where_the_path_from_rest_ends(
     np.testing.assert_allclose(tip(near), tip(path), atol=0.05)
 
 
+@pytest.mark.slow
 def test_another_pressure(known: Solution) -> None:
     near = solve_near(ACTUATOR, known, 0.9 * PRESSURE)
     path = solve(ACTUATOR, [0.9 * PRESSURE], SIZE)
@@ -82,6 +83,7 @@ def test_an_expected_motion_saves_steps(known: Solution) -> None:
     np.testing.assert_allclose(expected.states[-1].theta, plain.states[-1].theta, atol=1e-5)
 
 
+@pytest.mark.slow
 def test_an_expected_motion_of_another_mesh_is_left(known: Solution) -> None:
     # Here the sectors' edges part, and each gets bricks of its own.
     windows = list(ACTUATOR.windows)

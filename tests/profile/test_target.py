@@ -29,6 +29,7 @@ def test_convex_counts_positive_on_both_sides() -> None:
 
 
 @given(st.floats(0, 30), st.floats(70, 100))
+@pytest.mark.slow
 def test_from_and_to_are_shares_of_the_arc_length(start: float, end: float) -> None:
     whole = profile_of_object(CIRCLE, Reach("left", 10.0))
     part = profile_of_object(CIRCLE, Reach("left", 10.0, start_pct=start, end_pct=end))

@@ -69,6 +69,7 @@ def test_the_curve_of_a_nearly_incompressible_rubber() -> None:
 @settings(max_examples=8)
 @example(0.1, 0.0, 0.46, [1.1, 1.2, 1.3])
 @example(0.1, 1.0, 0.46, [1.1, 1.2, 1.3])
+@pytest.mark.slow
 def test_the_fit_recovers_the_law_of_exact_data(
     sum_MPa: float, share: float, nu: float, more: list[float]
 ) -> None:

@@ -85,6 +85,7 @@ def test_on_the_sheet_nothing_needs_to_be_said_of_size_and_way_up(stood: Seen) -
         *(pytest.param(SHOT, turn, marks=pytest.mark.slow) for turn in (85.0, 40.0)),
     ],
 )
+@pytest.mark.slow
 def test_on_the_sheet_it_may_lie_any_way(tmp_path: Path, shot: Shot, turn: float) -> None:
     """Not turned upright, it has its own size along its own axis all the same."""
     body = bulb(0.9)
