@@ -142,6 +142,7 @@ def test_no_workers(store: JointStore) -> None:
 
 
 @kills
+@pytest.mark.slow
 def test_a_process_that_dies_loses_its_own_run_only(
     calls: Path, store: JointStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:

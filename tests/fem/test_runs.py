@@ -180,6 +180,7 @@ def test_laws_that_are_one_bend_alike() -> None:
     np.testing.assert_allclose(a.x, b.x, atol=1e-5)
 
 
+@pytest.mark.slow
 def test_half_and_whole_agree() -> None:
     actuator = chain(8.0, [14.0], [6.0], [np.radians(100.0)])
     size = replace(DEFAULT_MESH, around=6, beside=0.0, edge=1.0)  # the same bricks in both
@@ -193,6 +194,7 @@ def test_half_and_whole_agree() -> None:
     assert a.energy == pytest.approx(b.energy, rel=1e-5)
 
 
+@pytest.mark.slow
 def test_a_turned_sector_turns_the_whole_answer() -> None:
     """A joint at any alpha_center is the joint at 270 deg turned about the tube."""
     size = replace(DEFAULT_MESH, around=6, beside=0.0, edge=1.0)  # 120 deg is four bricks

@@ -182,6 +182,7 @@ def test_nothing_to_bend_is_never_passed_off_as_a_joint() -> None:
         assert abs(s.vertex[0] - 500.0) < 40.0
 
 
+@pytest.mark.slow
 def test_a_long_profile_stays_quick() -> None:
     waves = [(60.0, 40.0), (60.0, -40.0)] * 8
     grid_free = bent_line(*waves)
