@@ -172,6 +172,7 @@ def test_few_runs_leave_out_the_papers_steps() -> None:
     assert b"too few runs" in files["report.txt"]
 
 
+@pytest.mark.slow
 def test_figures_and_residuals() -> None:
     files = derivation_files(derive(PLAN, Made(reached=8)))
     pictures = [name for name in files if name.endswith(".png")]

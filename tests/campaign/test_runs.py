@@ -304,6 +304,7 @@ def test_impossible_joints_are_told(change: dict[str, float], why: str, model: s
     assert why in str(found.failure)
 
 
+@pytest.mark.slow
 def test_a_limit_point_is_told_and_the_states_before_it_kept(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

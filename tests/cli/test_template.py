@@ -17,6 +17,7 @@ def test_template_of_a_design(samples: Path, tmp_path: Path) -> None:
     assert call("template", samples / REST).exit_code == 3
 
 
+@pytest.mark.slow
 def test_template_for_other_ways_to_make_it(samples: Path, tmp_path: Path) -> None:
     design = samples / "paper_bulb.json"
     options = ("--variant", "strip", "--kerf", "0.2", "--date", "26 Nov 2026", "--dxf", "R12")

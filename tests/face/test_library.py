@@ -44,6 +44,7 @@ def test_a_file_by_its_name_gives_what_the_command_gives(made: Result, samples: 
         design(Request(samples / "egg.png", verify=False), side="right")
 
 
+@pytest.mark.slow
 def test_a_picture_as_an_array_is_the_same_picture(made: Result, samples: Path) -> None:
     with Image.open(samples / "egg.png") as image:
         rgba = np.array(image.convert("RGBA"))
@@ -107,6 +108,7 @@ def test_the_steps_one_by_one(made: Result, samples: Path) -> None:
     assert design(mirrored, verify=False, method="paper").design.source.side == "right"
 
 
+@pytest.mark.slow
 def test_files_as_bytes(made: Result, tmp_path: Path) -> None:
     files = files_of(made)
     assert files["overlay.png"].startswith(b"\x89PNG")

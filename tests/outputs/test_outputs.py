@@ -122,6 +122,7 @@ def test_the_folder_of_a_run(run: Run) -> None:
     assert len(more["shape.csv"].splitlines()) > len(files["shape.csv"].splitlines())
 
 
+@pytest.mark.slow
 def test_a_template_is_asked_for_by_kind_paper_and_version(result: Result) -> None:
     assert list(TEMPLATE_FILES) == TEMPLATES
     plain = template_files(result.design)

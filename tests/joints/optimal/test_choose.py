@@ -49,6 +49,7 @@ def bent_line(*pieces: tuple[float, float]) -> Profile:
 BOWL = bent_line((20.0, 0.0), (40.0, 70.0), (20.0, 0.0))
 
 
+@pytest.mark.slow
 def test_the_search_is_as_good_as_trying_everything() -> None:
     profile = bent_line((15.0, 0.0), (25.0, 55.0), (25.0, -25.0), (15.0, 0.0))
     grid = Discretisation(12.0, (0.0,), (-0.3, 0.3), 0.04, 0.16)
