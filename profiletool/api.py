@@ -24,11 +24,13 @@ from profiletool.campaign.store import Store, default_folder
 from profiletool.campaign.workers import run_all
 from profiletool.errors import UsageError
 from profiletool.files.formula import read_formula
+from profiletool.joints.closest import spaced
 from profiletool.joints.optimal_method import optimal_plan
 from profiletool.joints.paper_method import paper_plan
 from profiletool.joints.plan import Plan
 from profiletool.pipeline import Result, run
 from profiletool.profile.drawing.load import drawing_of
+from profiletool.records.built import BuildErrors
 from profiletool.records.design import Design
 from profiletool.records.making import check_request, request_of
 from profiletool.records.picture import Picture
@@ -36,9 +38,9 @@ from profiletool.records.profile import DrawnLine, Profile
 from profiletool.records.request import Request
 from profiletool.subject.find import Subject
 from profiletool.subject.find import find_subject as find
-from profiletool.verify.check import Check, check
+from profiletool.verify.check import Check, check, runs_into_itself, withdrawn
+from profiletool.verify.errors import with_errors
 from profiletool.verify.recompute import recomputed
-from profiletool.verify.trim import trim_of
 
 Source = str | PathLike[str] | ArrayLike | Picture | DrawnLine | Profile
 Say = Callable[[str], None]
@@ -145,8 +147,9 @@ def verify_design(
     Returns
     -------
     Check
-        ``check.design`` with the angles and the misfit by formula and by FE, the trim table, and
-        whether it is ``verified``; ``check.failure`` says why not.
+        ``check.design`` with the angles and the misfit by formula and by FE, what to expect of
+        the built actuator, the trim table, and whether it is ``verified``; ``check.failure`` says
+        why not.
 
     Raises
     ------
@@ -157,7 +160,11 @@ def verify_design(
     done = check(recomputed(design, points, read_formula(formula)), points, progress)
     if done.run is None or done.shape is None:
         return done
-    return replace(done, design=replace(done.design, trim=trim_of(done.design, done.run)))
+    if failure := runs_into_itself(done.run.verification.last):
+        return withdrawn(done, failure)
+    build = BuildErrors() if design.built is None else design.built.build
+    verified, _ = with_errors(done.design, done.run, spaced(points), build)
+    return replace(done, design=verified)
 
 
 def derive_formula(

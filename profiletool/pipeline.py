@@ -22,13 +22,10 @@ from profiletool.verdict.missed import Missed
 from profiletool.verdict.notes import notes_of
 from profiletool.verdict.reasons import misses_of, reasons_of
 from profiletool.verdict.summary import headline, summary
-from profiletool.verify.built import band_of, built_of
 from profiletool.verify.check import Check, check
-from profiletool.verify.fields import fields_of
+from profiletool.verify.errors import with_errors
 from profiletool.verify.forward import FeForwardModel
 from profiletool.verify.run import Progress
-from profiletool.verify.sensitivity import sensitivity_of
-from profiletool.verify.trim import trim_of
 
 _STABLE_SHARE = 0.94  # of the pressure at which FE loses its stability: 5 % more must stand
 
@@ -153,15 +150,9 @@ def _with_errors(attempt: Draft) -> Draft:
     checked, design = attempt.check, attempt.design
     if checked is None or checked.run is None or checked.shape is None:
         return attempt
-    design = replace(design, trim=trim_of(design, checked.run))
-    points = target_points(attempt.profile)
-    fields = fields_of(design, checked.run, points)
-    if fields is None:
-        return replace(attempt, design=design)
-    sensitivity = sensitivity_of(design, fields, points)
-    build = attempt.request.build
-    design = replace(design, sensitivity=sensitivity, built=built_of(design, fields, build))
-    return replace(attempt, design=design, band=band_of(design, fields, build))
+    points, build = target_points(attempt.profile), attempt.request.build
+    design, band = with_errors(design, checked.run, points, build)
+    return replace(attempt, design=design, band=band)
 
 
 def _judged(attempt: Draft) -> Result:

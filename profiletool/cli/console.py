@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import traceback
 from collections.abc import Callable, Iterator
@@ -102,6 +103,13 @@ def progress_bar(
         bar.stop()
 
 
+def cores() -> int:
+    """How many cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
 class Numbers(tuple[float, ...]):
     """Numbers with commas between, as an option takes them."""
 
@@ -145,7 +153,7 @@ def build(text: str) -> BuildErrors:
     try:
         return build_errors(text)
     except UsageError as error:
-        raise typer.BadParameter(str(error).replace("`build`", "--build")) from error
+        raise typer.BadParameter(in_flags(str(error))) from error
 
 
 def turn(text: str) -> float | str:

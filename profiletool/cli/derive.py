@@ -14,12 +14,12 @@ from profiletool.cli.console import (
     Numbers,
     Quiet,
     ascending,
+    cores,
     exit_codes,
     progress_bar,
     speaker,
 )
 from profiletool.cli.rows import parameters_of, with_signature
-from profiletool.cli.samples import cores
 from profiletool.errors import UsageError
 
 if TYPE_CHECKING:

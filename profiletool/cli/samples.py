@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from profiletool.cli.console import progress_bar
+from profiletool.cli.console import cores, progress_bar
 from profiletool.errors import UnreadableInput, UsageError
 
 if TYPE_CHECKING:
@@ -42,13 +41,6 @@ class SampleOptions:
             help="A dask.distributed scheduler for them, tcp://HOST:PORT, to run on instead."
         ),
     ] = None
-
-
-def cores() -> int:
-    """How many cores this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def taken(options: dict[str, Any]) -> SampleOptions:

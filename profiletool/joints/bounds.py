@@ -56,6 +56,7 @@ def cuts_of(model: Model, spec: TubeSpec) -> FloatArray:
     return np.asarray(cuts, dtype=float)
 
 
+PRESSURE_STEP = 0.001  # MPa: what a gauge can be set to
 WRAP_MM = 2.0  # least wrapped length between two windows, and at least one mesh
 END_WRAP_MM = 4.0  # least wrapped length at the closed end: the paper's mould leaves 4 mm there
 

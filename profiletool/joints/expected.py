@@ -47,7 +47,7 @@ class ErrorSizes:
 def error_sizes(build: BuildErrors, spec: TubeSpec) -> ErrorSizes | None:
     """Give the errors that count in the choice of joints; None where nothing is ever off."""
     sizes = ErrorSizes(
-        build.sigma("thread") * spec.pitch_mm / spec.radius_mm,
+        build.sigma("thread") * spec.thread_rad,
         build.sigma("cut"),
         build.sigma("pressure") / BAR_PER_MPA,
     )

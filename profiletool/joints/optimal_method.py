@@ -14,6 +14,7 @@ from profiletool.bending.constant_curvature import FormulaModel
 from profiletool.bending.model import Chain, Model
 from profiletool.bending.response import Response
 from profiletool.errors import UsageError
+from profiletool.joints.bounds import PRESSURE_STEP
 from profiletool.joints.correction.by_model import BendingForwardModel
 from profiletool.joints.correction.correct import (
     CannotBend,
@@ -35,7 +36,6 @@ from profiletool.records.rubber import law_of
 from profiletool.records.units import BAR_PER_MPA, FloatArray
 
 S = TypeVar("S")
-_PRESSURE_STEP = 0.001  # MPa: what a gauge can be set to
 _CHOICES = 2
 _AGAIN = 0.97  # of the pressure that a tube stands, where it does not stand the one asked
 
@@ -173,12 +173,11 @@ def _aim(request: Request, model: Model) -> Aim:
 
 def _step_sizes(request: Request) -> StepSizes:
     spec = request.tube
-    thread = spec.pitch_mm / spec.radius_mm
     alpha = request.alpha_step_deg
     return StepSizes(
-        alpha=thread if alpha is None else float(np.radians(alpha)),
+        alpha=spec.thread_rad if alpha is None else float(np.radians(alpha)),
         place=request.place_step_mm,
-        pressure=_PRESSURE_STEP,
+        pressure=PRESSURE_STEP,
     )
 
 

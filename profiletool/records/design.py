@@ -269,6 +269,16 @@ class Design:
     threads_off_mm: BuiltMisfit | None = None
 
     @property
+    def thread_rad(self) -> float:
+        """Angle of one mesh of the gauze around the tube, that of a thread more or less uncut."""
+        return 2.0 * self.gauze.pitch_mm / self.tube.outer_diameter_mm
+
+    @property
+    def planned(self) -> TrimPoint:
+        """Row of the trim table at the operating pressure; there must be a table."""
+        return min(self.trim, key=lambda row: abs(row.pressure_bar - self.pressure_bar))
+
+    @property
     def theta_uncertain(self) -> tuple[int, ...]:
         """Numbers of the joints that are too near to each other for an angle each."""
         between = [

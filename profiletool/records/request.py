@@ -80,6 +80,11 @@ class TubeSpec:
         """Outer radius of the tube."""
         return 0.5 * self.outer_diameter_mm
 
+    @property
+    def thread_rad(self) -> float:
+        """Angle of one mesh of the gauze around the tube, that of a thread more or less uncut."""
+        return self.pitch_mm / self.radius_mm
+
 
 @dataclass(frozen=True)
 class Look:

@@ -22,11 +22,11 @@ def expectation(design: Design) -> Markup:
     if built is None:
         return joined(())
     said = (
-        "Perfect parts would lie as near as the verdict says. Parts that are off by as much as the "
-        "table's first column, anywhere within it, lie this far off the profile, to first order in "
-        "the errors. Set the pressure once on the finished actuator: rubber, wall and pressure act "
-        "in one direction, which that takes out. The orange band beside the tube then holds "
-        "95 % of builds."
+        "The verdict's distance is that of perfect parts. An actuator whose parts are off, each "
+        "anywhere within the bounds below, lies this far off the profile, to first order in the "
+        "errors. Rubber, wall and pressure act in one direction, so setting the pressure once on "
+        "the finished actuator takes their errors out. The orange band beside the tube holds 95 % "
+        "of builds after that."
     )
     return joined((tag("p", said), _figures(built), _parts(built)))
 

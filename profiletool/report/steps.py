@@ -117,7 +117,8 @@ def _slits(design: Design) -> Markup:
             "p",
             f"Polyamide gauze, square mesh of {gauze.pitch_mm:g} mm, thread {gauze.thread_mm:g} "
             f"mm. Cut a piece of {short(along)} × {short(around)} mm with its threads along the "
-            "edges, longer at the clamped end by what plug and belt grip. Each slit lies between "
+            "edges, longer at the clamped end by what plug and belt grip; the start edge runs "
+            "half-way between two axial threads. Each slit lies between "
             "two hoop threads and severs axial threads only. Take no gauze out: the hoop threads "
             "stay whole.",
         ),

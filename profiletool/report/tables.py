@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import pi
+from math import radians
 
 from profiletool.joints.windows import slit_rows
 from profiletool.records.design import Design, Joint, Source
@@ -37,7 +37,7 @@ def joint_table(design: Design, places: FloatArray) -> Markup:
     """Tabulate all joints; ``places`` (n,) mm along the profile."""
     heads = (
         "Joint", "F (mm)", "openF (mm)", "slits (rows)", "alpha closed (°)",
-        "threads uncut", "bends", "θ wanted (°)", "θ formula (°)", "θ joint response (°)",
+        "alpha (threads)", "bends", "θ wanted (°)", "θ formula (°)", "θ joint response (°)",
         "θ FE (°)", "largest stretch", "on the tube (mm)", "on the profile (mm)",
     )  # fmt: skip
     rows = [
@@ -56,14 +56,14 @@ def slit_table(design: Design) -> Markup:
     pitch = design.gauze.pitch_mm
     found = slits(design.joints, design.tube, design.gauze)
     heads = ("Joint", "x from the clamped end (mm)", "rows, per turn", "slits, all turns",
-             "threads left uncut", "on the side")  # fmt: skip
+             "threads left uncut, by turn", "on the side")  # fmt: skip
     rows = [
         (
             f"{joint.number}",
             _places(joint, pitch),
             f"{len(slit_rows(joint, pitch))}",
             f"{sum(slit.joint == joint.number for slit in found)}",
-            threads_uncut(joint, design),
+            threads_left(joint, design),
             "far" if joint.away else "object's",
         )
         for joint in design.joints
@@ -124,10 +124,15 @@ def sensitivity_table(design: Design) -> Markup:
     return table(heads, rows, said)
 
 
-def threads_uncut(joint: Joint, design: Design) -> str:
-    """Count the axial threads that a joint keeps around the tube, in words."""
-    width = pi * design.tube.outer_diameter_mm * joint.alpha_closed_deg / 360.0
-    return short(width / design.gauze.pitch_mm)
+def threads_left(joint: Joint, design: Design) -> str:
+    """Count the axial threads that a joint's slits leave whole: by turn where these differ."""
+    counts = [row.uncut for row in design.threads if row.joint == joint.number]
+    return " / ".join(map(str, counts if len(set(counts)) > 1 else counts[:1])) or _NOTHING
+
+
+def _alpha_threads(joint: Joint, design: Design) -> str:
+    """Extent of the uncut sector in threads, as finite elements smear it."""
+    return short(radians(joint.alpha_closed_deg) / design.thread_rad)
 
 
 def _seen(source: Source) -> Iterator[tuple[str, str]]:
@@ -181,7 +186,7 @@ def _joint_row(joint: Joint, design: Design, place: float) -> tuple[str, ...]:
         f"{joint.openF_mm:g}",
         f"{len(slit_rows(joint, gauze.pitch_mm))}",
         f"{joint.alpha_closed_deg:.1f}",
-        threads_uncut(joint, design),
+        _alpha_threads(joint, design),
         f"{'away' if joint.away else 'toward'} ({joint.alpha_center_deg:g}°)",
         *(
             _NOTHING if theta is None else signed(joint.signed(theta))

@@ -33,7 +33,7 @@ def trimming(design: Design, most_bar: float) -> Markup:
 
 def trim_table(design: Design) -> Markup:
     """Tabulate tip and angles around the planned pressure, and what to set on an actuator there."""
-    planned = _planned(design)
+    planned = design.planned
     heads = (
         "P (bar)", "tip x (mm)", "tip y (mm)", "off the planned tip (mm)",
         *(f"θ{joint.number} (°)" for joint in design.joints), "set (bar)",
@@ -49,7 +49,7 @@ def trim_table(design: Design) -> Markup:
 
 
 def _steps(design: Design, most_bar: float) -> Iterator[Step]:
-    planned, top = _planned(design), design.trim[-1].pressure_bar
+    planned, top = design.planned, design.trim[-1].pressure_bar
     why = (
         "It is 1.1 times the planned pressure, and the highest that finite elements checked"
         if top > _FULL * planned.pressure_bar
@@ -115,8 +115,3 @@ def _row(point: TrimPoint, planned: TrimPoint, top: float) -> tuple[str, ...]:
         return cells
     first, *rest = (tag("strong", cell) for cell in cells)
     return (joined((first, " planned")), *rest)
-
-
-def _planned(design: Design) -> TrimPoint:
-    """Give the row at the planned pressure."""
-    return min(design.trim, key=lambda point: abs(point.pressure_bar - design.pressure_bar))

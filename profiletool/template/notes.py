@@ -194,8 +194,7 @@ def _setting(design: Design) -> Iterator[str]:
     """Return how to set the pressure on the finished actuator, where the design says that."""
     if not design.trim:
         return
-    planned = min(design.trim, key=lambda row: abs(row.pressure_bar - design.pressure_bar))
-    x, y = planned.tip_mm
+    x, y = design.planned.tip_mm
     bar, top = design.pressure_bar, design.trim[-1].pressure_bar
     yield (
         f"Before use: inflate {CYCLES} times to {top:.2f} bar, never more. Hold {bar:.2f} bar for "

@@ -9,12 +9,13 @@ from itertools import pairwise
 import numpy as np
 
 from profiletool.bending.kinematics import meets_itself
-from profiletool.joints.bounds import wrap_mm
+from profiletool.joints.bounds import PRESSURE_STEP, wrap_mm
 from profiletool.records.design import Design, named
 from profiletool.records.request import Request
+from profiletool.records.units import BAR_PER_MPA
 from profiletool.verdict.draft import Draft
+from profiletool.verify.check import runs_into_itself, withdrawn
 
-PRESSURE_STEP_BAR = 0.01  # what a gauge can be set to
 _SAME = 1e-4  # of a step; design.json keeps six decimals
 
 
@@ -28,14 +29,13 @@ def holding(attempt: Draft) -> Draft:
     if check is None or bent is None:
         return attempt
     off = off_steps(attempt.design, attempt.request)
-    if bent.touches:
-        failure = f"the bent tube runs into itself by {bent.overlap_mm:.1f} mm"
-    elif off:
+    failure = runs_into_itself(bent)
+    if not failure and off:
         failure = f"its numbers are not those that are built: {off[0]}"
-    else:
+    if not failure:
         return attempt
-    design = replace(attempt.design, verified=False)
-    return replace(attempt, design=design, check=replace(check, design=design, failure=failure))
+    check = withdrawn(replace(check, design=attempt.design), failure)
+    return replace(attempt, design=check.design, check=check)
 
 
 def broken(attempt: Draft) -> tuple[str, ...]:
@@ -72,7 +72,7 @@ def off_steps(design: Design, request: Request) -> tuple[str, ...]:
     if request.method != "optimal":
         return ()
     spec, said = request.tube, list[str]()
-    thread = float(np.degrees(spec.pitch_mm / spec.radius_mm))
+    thread = float(np.degrees(spec.thread_rad))
     step = thread if request.alpha_step_deg is None else request.alpha_step_deg
     alpha = {j.number: j.alpha_closed_deg for j in design.joints}
     off = [number for number, value in alpha.items() if not _whole(value, step)]
@@ -82,10 +82,9 @@ def off_steps(design: Design, request: Request) -> tuple[str, ...]:
     off = [number for number, places in _places(design, request).items() if places]
     if off:
         said.append(f"the place of {named(off)} is not in steps of {request.place_step_mm:g} mm")
-    if not _whole(design.pressure_bar, PRESSURE_STEP_BAR):
-        said.append(
-            f"the pressure, {design.pressure_bar:.4f} bar, is finer than {PRESSURE_STEP_BAR:g} bar"
-        )
+    finest = BAR_PER_MPA * PRESSURE_STEP
+    if not _whole(design.pressure_bar, finest):
+        said.append(f"the pressure, {design.pressure_bar:.4f} bar, is finer than {finest:g} bar")
     return tuple(said)
 
 

@@ -50,8 +50,8 @@ def built_text(built: Built) -> str:
     """Say what to expect of the actuator that is built, as it is set and as its pressure is."""
     expected = built.expected_rms_mm
     return (
-        f"{expected.as_set:.2f} mm RMS expected as set, {expected.trimmed:.2f} mm once its "
-        "pressure is set on it"
+        f"{expected.as_set:.2f} mm RMS expected at the planned pressure, "
+        f"{expected.trimmed:.2f} mm after the pressure is set on it"
     )
 
 

@@ -52,11 +52,10 @@ def groups_of(design: Design, fields: ErrorFields, build: BuildErrors) -> tuple[
     A cut that is too long is so at both ends, and a joint off its place moves alone: both are
     measured from the clamped end.
     """
-    thread = 2.0 * design.gauze.pitch_mm / design.tube.outer_diameter_mm
     before, behind = fields.wrapped[:-1], fields.wrapped[1:]
     units = {
         "pressure": fields.pressure[None] / BAR_PER_MPA,
-        "thread": thread * fields.alpha,
+        "thread": design.thread_rad * fields.alpha,
         "rubber": 0.01 * fields.rubber[None],
         "wall": 0.01 * design.tube.wall_mm * fields.wall[None],
         "cut": fields.openF - 0.5 * (before + behind),

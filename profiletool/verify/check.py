@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from fem.errors import BadGeometry, NotConverged
 from profiletool.joints.misfit import misfit_to
 from profiletool.records.design import Design
+from profiletool.records.fe import FeState
 from profiletool.records.frames import Shape
 from profiletool.records.units import FloatArray
 from profiletool.verify.run import Progress, Run, reason, run_design, shortly, too_little
@@ -37,6 +38,18 @@ class Check:
         """The tube at the operating pressure; None where FE did not get there."""
         done = self.run is not None and self.failure is None
         return self.run.verification.last.shape if done and self.run is not None else None
+
+
+def runs_into_itself(state: FeState) -> str:
+    """Say that a bent tube runs into itself; empty where it does not."""
+    if not state.touches:
+        return ""
+    return f"the bent tube runs into itself by {state.overlap_mm:.1f} mm"
+
+
+def withdrawn(done: Check, failure: str) -> Check:
+    """Take a verification back for a reason."""
+    return replace(done, design=replace(done.design, verified=False), failure=failure)
 
 
 def check(design: Design, target: FloatArray, progress: Progress | None = None) -> Check:

@@ -83,11 +83,11 @@ def draws_of(build: BuildErrors, joints: int, count: int) -> tuple[BuildDraw, ..
 
 def drawn(design: Design, draw: BuildDraw) -> Design:
     """Design with the threads, the cuts, the places and the wall of a build."""
-    thread = np.degrees(2.0 * design.gauze.pitch_mm / design.tube.outer_diameter_mm)
+    thread = float(np.degrees(design.thread_rad))
     joints = tuple(
         replace(
             joint,
-            alpha_closed_deg=joint.alpha_closed_deg + float(thread) * threads,
+            alpha_closed_deg=joint.alpha_closed_deg + thread * threads,
             openF_mm=joint.openF_mm + cut,
             centre_mm=joint.centre_mm + place,
         )
@@ -131,6 +131,8 @@ def run_draw(design: Design, draw: BuildDraw, points: FloatArray) -> SampledBuil
         return SampledBuild(np.nan, np.nan, str(error))
     line = _Lines(solution, design, points)
     trim = line.best_pressure(nominal)
+    if not line.pressure[0] < trim < line.pressure[-1]:
+        return SampledBuild(np.nan, np.nan, "its best pressure is beyond those looked at")
     if max(as_set, trim + off) > line.pressure[-1] + _SLACK:
         why = "" if solution.critical is None else f": {said(ended(solution.critical))}"
         return SampledBuild(np.nan, np.nan, f"it does not bear the pressure{why}")

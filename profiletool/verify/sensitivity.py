@@ -27,7 +27,6 @@ def sensitivity_of(
     points : (M, 2) mm
         Of the profile, those of the fields.
     """
-    thread = 2.0 * design.gauze.pitch_mm / design.tube.outer_diameter_mm
     wall = _WALL_SHARE * design.tube.wall_mm
     scale = design.source.scale_error_share or _SCALE_SHARE
     # What lies off the start grows with the scale.
@@ -35,7 +34,7 @@ def sensitivity_of(
     pressure = _PRESSURE_BAR / BAR_PER_MPA
     return (
         _told(f"pressure {_PRESSURE_BAR:g} bar off", None, pressure * fields.pressure),
-        _worst("one thread more or less uncut", thread * fields.alpha),
+        _worst("one thread more or less uncut", design.thread_rad * fields.alpha),
         _worst(f"cut {_OPENF_MM:g} mm longer or shorter", _OPENF_MM * fields.openF),
         _worst(f"joint {_PLACE_MM:g} mm off its place", _PLACE_MM * fields.wrapped[:-1]),
         _told(f"wall {100.0 * _WALL_SHARE:g} % off", None, wall * fields.wall),

@@ -145,6 +145,10 @@ def test_a_joint_changed_by_hand_is_verified_anew(made: Result) -> None:
     assert check.design.fit.fe is not None
     assert made.design.fit.fe is None
     assert check.shape is not None
+    # A verdict never stands for perfect parts alone.
+    assert check.design.built is not None
+    assert check.design.built.expected_rms_mm.as_set > check.design.fit.fe.rms_mm
+    assert check.design.sensitivity
     moved = replace(made.design, joints=(replace(first, centre_mm=first.centre_mm - 1.0), *others))
     again = verify_design(moved, profile.points).design
     assert again.tube.root_mm == first.centre_mm - 1.0

@@ -144,3 +144,11 @@ def test_single_builds_by_finite_elements_are_as_the_fields_say(
     assert found.failure is None
     assert found.as_set_mm == pytest.approx(np.sqrt(np.mean(moved**2)), rel=0.1, abs=0.01)
     assert found.trimmed_mm < found.as_set_mm
+
+
+def test_a_build_whose_best_pressure_was_not_looked_at_is_not_counted(
+    design: Design, points: FloatArray
+) -> None:
+    found = run_draw(design, replace(NO_DRAW, wall=0.4), points)
+    assert found.failure is not None
+    assert np.isnan(found.trimmed_mm)

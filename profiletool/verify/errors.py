@@ -1,0 +1,43 @@
+"""Errors of the build in a verified design: sensitivities, the built misfit, the trim table."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from profiletool.records.built import BuildErrors
+from profiletool.records.design import Design
+from profiletool.records.units import FloatArray
+from profiletool.verify.built import band_of, built_of
+from profiletool.verify.fields import fields_of
+from profiletool.verify.run import Run
+from profiletool.verify.sensitivity import sensitivity_of
+from profiletool.verify.trim import trim_of
+
+
+def with_errors(
+    design: Design, run: Run, points: FloatArray, build: BuildErrors
+) -> tuple[Design, FloatArray | None]:
+    """Add what errors of the build do to a verified design, and how to set its pressure.
+
+    Parameters
+    ----------
+    design : Design
+    run : Run
+        Of the design, up to its pressure.
+    points : (M, 2) mm
+        Of the profile, evenly spaced.
+    build : BuildErrors
+
+    Returns
+    -------
+    Design
+    (2, M, 2) array or None
+        Edges of the band about the object-facing line that holds 95 % of builds, mm; None where
+        FE's tangent allows no derivatives.
+    """
+    design = replace(design, trim=trim_of(design, run))
+    fields = fields_of(design, run, points)
+    if fields is None:
+        return design, None
+    sensitivity, built = sensitivity_of(design, fields, points), built_of(design, fields, build)
+    return replace(design, sensitivity=sensitivity, built=built), band_of(design, fields, build)
