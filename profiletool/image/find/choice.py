@@ -1,38 +1,42 @@
-"""The choice between candidates, which takes more than asking which one looks best."""
+"""The choice between candidates: what the user said of the object, and two that are alike."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
+import cv2
+import numpy as np
+
 from profiletool.image.find.candidates import BELIEVED, Candidate
+from profiletool.image.find.ground import BoolImage
 from profiletool.image.find.masks import overlap
 from profiletool.image.find.region import ALIKE, SeveralAlike
 
 _APART = 0.05  # overlap below which two masks are two things
-
-# A part of an object, a bulb's cap or a print on a jug, has a better edge and purer colours than
-# the whole. What tells the whole is that it is large, that several methods find it, and that no
-# colours lie round it that are strange to the frame. Ranked on benchmarks/silhouettes.py.
-_WEIGHTS = {"edge": 1.0, "peak": 1.0, "separation": -1.5, "ground": 3.0, "solidity": 1.5}
-_BY_SIZE, _BY_AGREEMENT = 3.5, 3.0
+_EXTENT = 0.7  # overlap of a mask's own box with the one that was given
+_SAME_SHOWN = 0.9  # overlap of two masks that look the same
 
 
-def ranked(found: Sequence[Candidate], pointed: bool = False) -> list[Candidate]:
-    """Put the candidate first that is most likely the whole object.
+def fitting(found: Sequence[Candidate], barred: BoolImage) -> list[Candidate]:
+    """Keep what fills a box, all but which is barred (H, W)."""
+    box = _extent(~barred)
+    return [one for one in found if overlap(_extent(one.mask), box) >= _EXTENT]
 
-    Where it was pointed at, one that is believed comes before a larger one that is not.
-    """
 
-    def merit(candidate: Candidate) -> tuple[bool, float]:
-        quality = candidate.quality
-        looks = sum(weight * float(getattr(quality, name)) for name, weight in _WEIGHTS.items())
-        others = [overlap(candidate.mask, o.mask) for o in found if o is not candidate]
-        agreement = sum(others) / max(len(others), 1)
-        whole = looks + _BY_SIZE * math.sqrt(quality.size) + _BY_AGREEMENT * agreement
-        return pointed and candidate.confidence >= BELIEVED, whole
+def _extent(mask: BoolImage) -> BoolImage:
+    x, y, w, h = cv2.boundingRect(np.ascontiguousarray(mask).view(np.uint8))
+    extent = np.zeros(mask.shape, bool)
+    extent[y : y + h, x : x + w] = True
+    return extent
 
-    return sorted(found, key=merit, reverse=True)
+
+def different(found: Sequence[Candidate]) -> list[Candidate]:
+    """Leave out what looks the same as one before it."""
+    kept: list[Candidate] = []
+    for one in found:
+        if all(overlap(one.mask, other.mask) < _SAME_SHOWN for other in kept):
+            kept.append(one)
+    return kept
 
 
 def refuse_another(best: Candidate, found: Sequence[Candidate]) -> None:

@@ -12,6 +12,7 @@ from profiletool.image.find.across import Rim, rim_of, steps
 from profiletool.image.find.colours import histogram, likeness
 from profiletool.image.find.ground import BoolImage, FloatImage, frame_of
 from profiletool.image.find.masks import window_of
+from profiletool.image.find.view import View
 
 _FIRM_LAB = 6.0  # a step in colour that is no noise
 _REACH_SHARE, _REACH_PX = 0.045, (5, 8)  # of the object's size, and its bounds
@@ -19,7 +20,7 @@ _RUN_PX = 15  # along so much of an outline its step keeps its direction
 _FRAME_SHARE = 0.08
 _KNOWN = 0.1  # a colour is known that is this much as common along the frame
 _BAND_SHARE = 0.12  # width of the band outside, of the object's size
-# A logistic regression on what benchmarks/silhouettes.py draws, rounded.
+# A logistic regression on photographs with true masks, rounded.
 _WEIGHTS = {"edge": 2.0, "peak": 5.0, "separation": 3.0, "ground": 3.0, "solidity": 3.5}
 _BIAS = -13.3
 
@@ -48,6 +49,12 @@ class Quality:
         Share of the outline that runs along the frame.
     size : float
         Share of the picture.
+    middle : float
+        How near the region's centre is to the picture's: 1 there, 0 in a corner.
+    regained : float
+        Overlap with what its colours alone, against those of all the rest, cut out.
+    agreement : float
+        Mean overlap with the other candidates.
     """
 
     edge: float
@@ -59,35 +66,25 @@ class Quality:
     solidity: float
     border: float
     size: float
+    middle: float = 1.0
+    regained: float = 1.0
+    agreement: float = 1.0
 
-    def confidence(self, prior: float = 0.0) -> float:
-        """Chance that the mask is the object's to a twentieth of its area, 0 to 1.
-
-        Parameters
-        ----------
-        prior : float
-            What else speaks for it, as a logarithm of odds.
-        """
+    @property
+    def confidence(self) -> float:
+        """Chance that the mask is the object's to a twentieth of its area, 0 to 1."""
         score = _BIAS + sum(weight * getattr(self, name) for name, weight in _WEIGHTS.items())
-        return float(1.0 / (1.0 + np.exp(-score - prior)))
+        return float(1.0 / (1.0 + np.exp(-score)))
 
 
-def quality_of(lab: FloatImage, cell: NDArray[np.int32], mask: BoolImage) -> Quality:
-    """Judge a mask on its picture.
-
-    Parameters
-    ----------
-    lab : (H, W, 3)
-        The picture in CIE Lab, lightly blurred.
-    cell : (H, W) int32
-        Its colours, as `colours.cells` numbers them.
-    mask : (H, W)
-        One region, its holes filled.
-    """
+def quality_of(
+    view: View, mask: BoolImage, regained: float = 1.0, agreement: float = 1.0
+) -> Quality:
+    """Judge a mask (H, W), one region with its holes filled, on its picture."""
     area = float(mask.sum())
-    rim = rim_of(lab, mask, round(float(np.clip(_REACH_SHARE * np.sqrt(area), *_REACH_PX))))
+    rim = rim_of(view.lab, mask, round(float(np.clip(_REACH_SHARE * np.sqrt(area), *_REACH_PX))))
     edge, steady, peak = edge_support(rim)
-    separation, ground = _colour_support(cell, mask)
+    separation, ground = _colour_support(view.cell, mask)
     along = np.hypot(*(np.roll(rim.points, -1, axis=0) - rim.points).T).sum()
     hull = cv2.contourArea(cv2.convexHull(rim.points.astype(np.float32)))
     return Quality(
@@ -100,7 +97,17 @@ def quality_of(lab: FloatImage, cell: NDArray[np.int32], mask: BoolImage) -> Qua
         solidity=min(1.0, area / max(hull, 1.0)),
         border=float(rim.on_frame.mean()),
         size=area / mask.size,
+        middle=_middle(mask),
+        regained=regained,
+        agreement=agreement,
     )
+
+
+def _middle(mask: BoolImage) -> float:
+    half = np.array(mask.shape) / 2.0
+    rows, columns = np.nonzero(mask)
+    off = np.hypot(rows.mean() / half[0] - 1.0, columns.mean() / half[1] - 1.0)
+    return float(1.0 - off / np.sqrt(2.0))
 
 
 def edge_support(rim: Rim) -> tuple[float, float, float]:

@@ -1,0 +1,45 @@
+"""Pictures of two tones: masks, scans of prints and drawings, which show their object outright."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from profiletool.image.find.ground import BoolImage, FloatImage, frame_of
+
+_TONES_APART = 60.0  # 8 bit levels
+_OFF_TONE, _PURE = 14.0, 0.975  # what counts as a tone, and how much of a picture has one
+_TRIM_PX = 2
+
+
+def two_tones(rgb: NDArray[np.uint8]) -> FloatImage | None:
+    """Share of object in every pixel of a picture (H, W, 3) of two tones; None for any other.
+
+    The ground is the tone that most of the frame has; between the tones lie blurred edges only.
+    """
+    grey = cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY)
+    level, _ = cv2.threshold(grey, 0, 255, cv2.THRESH_BINARY | cv2.THRESH_OTSU)
+    bright = grey > level
+    if not bright.any() or bright.all():
+        return None
+    frame = bright[frame_of(grey.shape, 0.01)].mean() > 0.5
+    object_, ground = (rgb[~bright], rgb[bright]) if frame else (rgb[bright], rgb[~bright])
+    far, near = (np.median(part[:: 1 + len(part) // 4000], axis=0) for part in (object_, ground))
+    if float(np.linalg.norm(far - near)) < _TONES_APART:
+        return None
+    shade = rgb.astype(np.float32)
+    off = [np.abs(shade - tone.astype(np.float32)).max(axis=2) for tone in (far, near)]
+    if float((np.minimum(*off) < _OFF_TONE).mean()) < _PURE:
+        return None
+    step = (far - near).astype(np.float32)
+    share = (shade - near.astype(np.float32)) @ step / float(step @ step)
+    return np.asarray(np.clip(share, 0.0, 1.0), np.float32)
+
+
+def trimmed(mask: BoolImage) -> bool:
+    """Whether a picture is cut to its object's own size, so that meeting the frame means nothing."""
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    height, width = mask.shape
+    margins = rows[0], height - 1 - rows[-1], columns[0], width - 1 - columns[-1]
+    return sum(int(margin) <= _TRIM_PX for margin in margins) >= 3
