@@ -99,7 +99,7 @@ def see(picture: Picture, asked: ScaleRequest, look: Look, say: Callable[[str], 
 def _hint(look: Look, picture: Picture) -> Hint:
     shape = picture.rgb.shape[:2]
     mask = None if look.mask is None else load_mask(look.mask, shape)
-    hint = Hint(look.box, look.point, mask)
+    hint = Hint(look.box, look.point, mask, look.candidate)
     check_hint(hint, shape)
     return hint
 

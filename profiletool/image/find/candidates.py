@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from profiletool.errors import NoObject
-from profiletool.image.find.ground import BoolImage
+from profiletool.image.find.ground import BoolImage, frame_of
 from profiletool.image.find.masks import overlap
-from profiletool.image.find.mosaic import Mosaic, mosaic_of, polished
+from profiletool.image.find.mosaic import Mosaic, cut, mosaic_of, polished
 from profiletool.image.find.proposals import proposals, regions, within
 from profiletool.image.find.quality import Quality, quality_of
 from profiletool.image.find.region import SeveralAlike, region_on_ground
@@ -19,6 +19,9 @@ from profiletool.image.find.view import View
 BELIEVED = 0.5  # a candidate of less confidence is nothing to design from
 _SAME = 0.985  # overlap of regions that the polish makes one
 _HOST = 0.06  # of the frame: a smaller region is nobody's ground
+_SAME_POLISHED = 0.96
+_MOSTLY, _SMALLER = 0.9, 0.85  # of a region: what lies in a larger one, and how much smaller it is
+_ANOTHER, _FAR = 0.9, 3.0  # overlap below which a candidate is a rival, and a lead that is enough
 _ON_HOST = 0.7  # of its host: a larger region is the host itself
 
 
@@ -29,16 +32,20 @@ class Candidate:
     mask: BoolImage
     method: str
     quality: Quality
-    confidence: float
+
+    @property
+    def confidence(self) -> float:
+        """Chance that the mask is right, 0 to 1."""
+        return self.quality.confidence
 
 
 @dataclass(frozen=True)
 class _Region:
-    """A mask, what found it, and the mask that it lies on where that was looked into."""
+    """A mask, what found it, and the number of the region that it was found on."""
 
     mask: BoolImage
     method: str
-    host: BoolImage | None = None
+    host: int | None = None
 
 
 def find_candidates(view: View) -> list[Candidate]:
@@ -69,39 +76,71 @@ def find_candidates(view: View) -> list[Candidate]:
     _look_into(view, mosaic, found)
     if not found:
         raise missed or NoObject("no object found in the picture")
-    return _judged(view, [replace(one, mask=_polished(view, one.mask)) for one in found])
+    return _judged(view, mosaic, _with_polished(view, found))
 
 
 def judged(view: View, mask: BoolImage, method: str) -> Candidate:
     """Judge one region of a view by itself."""
-    return _judged(view, [_Region(mask, method)])[0]
+    return _judged(view, mosaic_of(view.lab), [_Region(mask, method)])[0]
 
 
-def _add(found: list[_Region], method: str, mask: BoolImage, host: BoolImage | None = None) -> None:
+def _add(found: list[_Region], method: str, mask: BoolImage, host: int | None = None) -> None:
     if not any(overlap(mask, other.mask) > _SAME for other in found):
         found.append(_Region(mask, method, host))
 
 
 def _look_into(view: View, mosaic: Mosaic, found: list[_Region]) -> None:
     """Add what lies on a sheet, a mat or a tray that was taken for the object."""
-    for host in [one.mask for one in found if one.mask.mean() > _HOST]:
-        for mask in within(view, mosaic, host):
+    for number, host in enumerate(found[:]):
+        if host.mask.mean() < _HOST:
+            continue
+        for mask in within(view, mosaic, host.mask):
             for region in regions(mask, view.point):
-                if region.sum() < _ON_HOST * host.sum():
-                    _add(found, "what lies on it", region, host)
+                if region.sum() < _ON_HOST * host.mask.sum():
+                    _add(found, "what lies on it", region, number)
 
 
-def _polished(view: View, mask: BoolImage) -> BoolImage:
-    drawn = polished(view.lab, mask) & ~view.barred
-    return drawn if drawn.any() else mask
+def _with_polished(view: View, found: Sequence[_Region]) -> list[_Region]:
+    """Draw every outline anew; one that comes out much different counts as it was, too."""
+    drawn, kept = [], []
+    for one in found:
+        mask = polished(view.lab, one.mask) & ~view.barred
+        drawn.append(replace(one, mask=mask if mask.any() else one.mask))
+        if overlap(mask, one.mask) < _SAME_POLISHED:
+            kept.append(one)
+    return drawn + kept
 
 
-def _judged(view: View, found: Sequence[_Region]) -> list[Candidate]:
+def _judged(view: View, mosaic: Mosaic, found: Sequence[_Region]) -> list[Candidate]:
+    """Judge regions by themselves, then by each other; the best first."""
+    ground = frame_of(view.barred.shape, 0.01) | view.barred
     made = []
     for one in found:
-        others = [overlap(one.mask, o.mask) for o in found if o is not one]
-        agreement = sum(others) / max(len(others), 1)
-        quality = quality_of(view, one.mask, agreement, one.host)
-        made.append(Candidate(one.mask, one.method, quality, quality.confidence))
-    return sorted(made, key=lambda candidate: candidate.confidence, reverse=True)
-
+        home = None if one.host is None else found[one.host].mask
+        regained = overlap(one.mask, cut(mosaic, one.mask, ground, rounds=1))
+        made.append(replace(quality_of(view, one.mask, home), regained=regained))
+    size = np.array([one.mask.sum() for one in found], float)
+    common = np.array([[(one.mask & two.mask).sum() for two in found] for one in found], float)
+    alike = common / (size[:, None] + size - common)
+    beyond = (common > _MOSTLY * size[:, None]) & (size[:, None] < _SMALLER * size)
+    related = []
+    for number, quality in enumerate(made):
+        others = np.delete(alike[number], number)
+        around = [made[k].clear * (1.0 - made[k].four_cornered)
+                  for k in np.flatnonzero(beyond[number])]  # fmt: skip
+        borne = [q.clear for one, q in zip(found, made, strict=True) if one.host == number]
+        related.append(
+            replace(
+                quality,
+                agreement=float(others.mean()) if len(others) else 1.0,
+                within=max(around, default=0.0),
+                sheet=max(borne, default=0.0) * quality.four_cornered,
+            )
+        )
+    merits = np.array([quality.merit for quality in related])
+    candidates = []
+    for number, (one, quality) in enumerate(zip(found, related, strict=True)):
+        rivals = merits[alike[number] < _ANOTHER]
+        lead = float(np.clip(merits[number] - rivals.max(), -_FAR, _FAR)) if len(rivals) else _FAR
+        candidates.append(Candidate(one.mask, one.method, replace(quality, lead=lead)))
+    return sorted(candidates, key=lambda candidate: candidate.quality.merit, reverse=True)

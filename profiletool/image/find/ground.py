@@ -74,7 +74,7 @@ def fit_ground(lab: FloatImage, usable: BoolImage, within: BoolImage | None = No
         A region that is the ground: its own border is looked at instead of the picture's.
     """
     height, width = lab.shape[:2]
-    border = _sampled(usable & (frame_of(usable.shape, _FRAME_SHARE) if within is None else _rim_of(within)))
+    border = _sampled(usable & (frame_of(usable.shape, _FRAME_SHARE) if within is None else border_of(within)))
     if len(border[0]) < 2 * len(_POWERS):
         border = _sampled(usable)
     colours = lab[border].astype(np.float64)
@@ -103,7 +103,7 @@ def frame_of(shape: tuple[int, ...], share: float) -> BoolImage:
     return frame
 
 
-def _rim_of(region: BoolImage) -> BoolImage:
+def border_of(region: BoolImage) -> BoolImage:
     """Mask the border of a region, off its very edge."""
     size = float(np.sqrt(region.sum()))
     deep = cv2.distanceTransform(region.view(np.uint8), cv2.DIST_L2, 3)

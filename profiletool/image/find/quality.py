@@ -1,7 +1,8 @@
-"""Confidence in a mask: by its edge, its colours and its shape."""
+"""What speaks for a mask: its edge, its colours, its shape, and what it lies on or bears."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import cv2
@@ -10,24 +11,32 @@ from numpy.typing import NDArray
 
 from profiletool.image.find.across import Rim, rim_of, steps
 from profiletool.image.find.colours import histogram, likeness
-from profiletool.image.find.ground import BoolImage, FloatImage, frame_of
-from profiletool.image.find.masks import window_of
+from profiletool.image.find.ground import BoolImage, FloatImage, border_of, frame_of
+from profiletool.image.find.masks import overlap, window_of
 from profiletool.image.find.view import View
 
 _FIRM_LAB = 6.0  # a step in colour that is no noise
 _REACH_SHARE, _REACH_PX = 0.045, (5, 8)  # of the object's size, and its bounds
 _RUN_PX = 15  # along so much of an outline its step keeps its direction
 _FRAME_SHARE = 0.08
-_KNOWN = 0.1  # a colour is known that is this much as common along the frame
+_KNOWN = 0.1  # a colour is known that is this much as common along the border
 _BAND_SHARE = 0.12  # width of the band outside, of the object's size
-# A logistic regression on photographs with true masks, rounded.
-_WEIGHTS = {"edge": 2.0, "peak": 5.0, "separation": 3.0, "ground": 3.0, "solidity": 3.5}
-_BIAS = -13.3
+_BENDS = (0.02, 0.03, 0.04, 0.06, 0.08, 0.1)  # of a hull's length: what four corners may miss
+_SHEET, _NO_SHEET = 0.97, 0.9  # overlap with four corners of a sheet, and of what is none
+
+# Fitted to photographs with true masks: which candidate is the object, and how likely it is.
+_MERIT = {
+    "edge": 2.1, "steady": 2.8, "peak": 1.5, "separation": 1.3, "ground": 3.7, "solidity": -1.2,
+    "border": -15.0, "width": -2.2, "middle": 4.1, "regained": 2.5, "agreement": 3.5,
+    "part": -1.7, "on_sheet": 5.3, "sheet": -2.2, "within": -1.3,
+}  # fmt: skip
+_ODDS = {"edge": 2.0, "peak": 2.0, "separation": 2.0, "regained": 2.0, "agreement": 2.0}
+_BIAS = -6.0
 
 
 @dataclass(frozen=True)
 class Quality:
-    """What speaks for a mask, and for how much it counts together.
+    """What speaks for a mask or against it.
 
     Attributes
     ----------
@@ -40,9 +49,8 @@ class Quality:
     separation : float
         How little the colours inside and those just outside have in common, 0 to 1.
     ground : float
-        Share of the pixels just outside whose colours are found along the frame too.
-    compactness : float
-        4 pi area over the perimeter squared: 1 for a disc.
+        Share of the pixels just outside whose colours are found along the border of the ground
+        too: the picture's frame, or the rim of what the region lies on.
     solidity : float
         Area over that of the convex hull.
     border : float
@@ -51,10 +59,20 @@ class Quality:
         Share of the picture.
     middle : float
         How near the region's centre is to the picture's: 1 there, 0 in a corner.
+    four_cornered : float
+        Whether four corners tell its shape, 0 to 1.
     regained : float
         Overlap with what its colours alone, against those of all the rest, cut out.
     agreement : float
         Mean overlap with the other candidates.
+    on_sheet, part : float
+        Whether it was found on something of four corners, and on something else, 0 to 1.
+    sheet : float
+        How clear what lies on it is, where it has four corners.
+    within : float
+        How clear a larger candidate round it is, where that is no sheet.
+    lead : float
+        Merit ahead of the best candidate that is another.
     """
 
     edge: float
@@ -62,44 +80,67 @@ class Quality:
     peak: float
     separation: float
     ground: float
-    compactness: float
     solidity: float
     border: float
     size: float
-    middle: float = 1.0
+    middle: float
+    four_cornered: float
     regained: float = 1.0
     agreement: float = 1.0
+    on_sheet: float = 0.0
+    part: float = 0.0
+    sheet: float = 0.0
+    within: float = 0.0
+    lead: float = 0.0
+
+    @property
+    def width(self) -> float:
+        """Root of the share of the picture."""
+        return float(np.sqrt(self.size))
+
+    @property
+    def clear(self) -> float:
+        """How clearly it is told from what is round it, by itself."""
+        return self.edge * self.regained * self.separation
+
+    @property
+    def merit(self) -> float:
+        """What tells the object from all other candidates; larger is better."""
+        return self._sum(_MERIT)
 
     @property
     def confidence(self) -> float:
         """Chance that the mask is the object's to a twentieth of its area, 0 to 1."""
-        score = _BIAS + sum(weight * getattr(self, name) for name, weight in _WEIGHTS.items())
-        return float(1.0 / (1.0 + np.exp(-score)))
+        return float(1.0 / (1.0 + np.exp(-_BIAS - self._sum(_ODDS))))
+
+    def _sum(self, weights: Mapping[str, float]) -> float:
+        return sum(weight * float(getattr(self, name)) for name, weight in weights.items())
 
 
-def quality_of(
-    view: View, mask: BoolImage, regained: float = 1.0, agreement: float = 1.0
-) -> Quality:
-    """Judge a mask (H, W), one region with its holes filled, on its picture."""
+def quality_of(view: View, mask: BoolImage, home: BoolImage | None = None) -> Quality:
+    """Judge a mask (H, W), one region with its holes filled, on its picture.
+
+    ``home`` is the region that it lies on, where that is not all of the picture.
+    """
     area = float(mask.sum())
     rim = rim_of(view.lab, mask, round(float(np.clip(_REACH_SHARE * np.sqrt(area), *_REACH_PX))))
     edge, steady, peak = edge_support(rim)
-    separation, ground = _colour_support(view.cell, mask)
-    along = np.hypot(*(np.roll(rim.points, -1, axis=0) - rim.points).T).sum()
-    hull = cv2.contourArea(cv2.convexHull(rim.points.astype(np.float32)))
+    separation, ground = _colour_support(view.cell, mask, home)
+    hull = cv2.convexHull(rim.points.astype(np.float32))
+    on_sheet = 0.0 if home is None else _four_cornered(home)
     return Quality(
         edge=edge,
         steady=steady,
         peak=peak,
         separation=separation,
         ground=ground,
-        compactness=min(1.0, 4.0 * np.pi * area / float(along) ** 2),
-        solidity=min(1.0, area / max(hull, 1.0)),
+        solidity=min(1.0, area / max(cv2.contourArea(hull), 1.0)),
         border=float(rim.on_frame.mean()),
         size=area / mask.size,
         middle=_middle(mask),
-        regained=regained,
-        agreement=agreement,
+        four_cornered=_four_cornered(mask),
+        on_sheet=on_sheet,
+        part=0.0 if home is None else 1.0 - on_sheet,
     )
 
 
@@ -108,6 +149,21 @@ def _middle(mask: BoolImage) -> float:
     rows, columns = np.nonzero(mask)
     off = np.hypot(rows.mean() / half[0] - 1.0, columns.mean() / half[1] - 1.0)
     return float(1.0 - off / np.sqrt(2.0))
+
+
+def _four_cornered(mask: BoolImage) -> float:
+    outlines, _ = cv2.findContours(mask.view(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    hull = cv2.convexHull(max(outlines, key=len))
+    for bend in _BENDS:
+        corners = cv2.approxPolyDP(hull, bend * cv2.arcLength(hull, True), True)
+        if len(corners) <= 4:
+            break
+    if len(corners) != 4:
+        return 0.0
+    drawn = np.zeros(mask.shape, np.uint8)
+    cv2.fillPoly(drawn, [corners], 1)
+    share = (overlap(drawn > 0, mask) - _NO_SHEET) / (_SHEET - _NO_SHEET)
+    return float(np.clip(share, 0.0, 1.0))
 
 
 def edge_support(rim: Rim) -> tuple[float, float, float]:
@@ -135,9 +191,12 @@ def _steadiness(step: FloatImage, free: NDArray[np.bool_]) -> float:
     return float((np.linalg.norm(mean, axis=1) / np.maximum(size, 1e-6))[free].mean())
 
 
-def _colour_support(cell: NDArray[np.int32], mask: BoolImage) -> tuple[float, float]:
+def _colour_support(
+    cell: NDArray[np.int32], mask: BoolImage, home: BoolImage | None
+) -> tuple[float, float]:
     """Give separation and ground, from every other row and column."""
-    cell, mask = cell[::2, ::2], mask[::2, ::2]
+    around = frame_of(mask.shape, _FRAME_SHARE) if home is None else border_of(home)
+    cell, mask, around = cell[::2, ::2], mask[::2, ::2], (around & ~mask)[::2, ::2]
     if not mask.any() or mask.all():
         return 0.0, 0.0
     wide = max(3, round(_BAND_SHARE * float(np.sqrt(mask.sum()))))
@@ -145,7 +204,6 @@ def _colour_support(cell: NDArray[np.int32], mask: BoolImage) -> tuple[float, fl
     window = window_of(mask, wide + 1)
     off = cv2.distanceTransform((~mask[window]).view(np.uint8), cv2.DIST_L2, 3)
     near[window] = (off > 0) & (off <= wide)
-    frame = frame_of(mask.shape, _FRAME_SHARE) & ~mask
     inside, outside = histogram(cell, mask), histogram(cell, near)
-    known = histogram(cell, frame) > _KNOWN * outside
+    known = histogram(cell, around) > _KNOWN * outside
     return 1.0 - likeness(inside, outside), float(outside[known].sum())
