@@ -200,6 +200,8 @@ def _notes(silhouette: Silhouette, scale: Scale, look: Look) -> Iterator[str]:
             f"the silhouette is sure to {100.0 * silhouette.confidence:.0f} % only: look at it in "
             "overlay.png; `box`, `point` or `mask` say where the object is"
         )
+    if silhouette.doubt:
+        yield silhouette.doubt
     if silhouette.held:
         yield "a hand seems to hide part of the object: look at its outline in overlay.png"
     error = scale.measured_error

@@ -19,9 +19,10 @@ from profiletool.image.find.view import View
 BELIEVED = 0.5  # a candidate of less confidence is nothing to design from
 _SAME = 0.985  # overlap of regions that the polish makes one
 _HOST = 0.06  # of the frame: a smaller region is nobody's ground
-_SAME_POLISHED = 0.96
+_SAME_POLISHED = 0.95
 _MOSTLY, _SMALLER = 0.9, 0.85  # of a region: what lies in a larger one, and how much smaller it is
-_ANOTHER, _FAR = 0.9, 3.0  # overlap below which a candidate is a rival, and a lead that is enough
+_ANOTHER, _FAR = 0.8, 3.0  # overlap below which two are not one thing, and a lead that is enough
+_UNCLEAR = 0.05
 _ON_HOST = 0.7  # of its host: a larger region is the host itself
 
 
@@ -37,6 +38,10 @@ class Candidate:
     def confidence(self) -> float:
         """Chance that the mask is right, 0 to 1."""
         return self.quality.confidence
+
+    def told(self) -> Candidate:
+        """Give the same where the user has said that the object is there."""
+        return replace(self, quality=replace(self.quality, told=1.0))
 
 
 @dataclass(frozen=True)
@@ -126,21 +131,24 @@ def _judged(view: View, mosaic: Mosaic, found: Sequence[_Region]) -> list[Candid
     related = []
     for number, quality in enumerate(made):
         others = np.delete(alike[number], number)
-        around = [made[k].clear * (1.0 - made[k].four_cornered)
-                  for k in np.flatnonzero(beyond[number])]  # fmt: skip
+        whole = [made[k].clear * (1.0 - made[k].four_cornered)
+                 for k in np.flatnonzero(beyond[number])]  # fmt: skip
         borne = [q.clear for one, q in zip(found, made, strict=True) if one.host == number]
         related.append(
             replace(
                 quality,
                 agreement=float(others.mean()) if len(others) else 1.0,
-                within=max(around, default=0.0),
+                within=min(1.0, max(whole, default=0.0) / max(quality.clear, _UNCLEAR)),
                 sheet=max(borne, default=0.0) * quality.four_cornered,
             )
         )
     merits = np.array([quality.merit for quality in related])
     candidates = []
     for number, (one, quality) in enumerate(zip(found, related, strict=True)):
-        rivals = merits[alike[number] < _ANOTHER]
-        lead = float(np.clip(merits[number] - rivals.max(), -_FAR, _FAR)) if len(rivals) else _FAR
-        candidates.append(Candidate(one.mask, one.method, replace(quality, lead=lead)))
+        lead, fine = (
+            min((*(merits[number] - merits[alike[number] < share]), _FAR))
+            for share in (_ANOTHER, _SAME_POLISHED)
+        )
+        ahead = replace(quality, lead=max(lead, -_FAR), fine_lead=max(fine, -_FAR))
+        candidates.append(Candidate(one.mask, one.method, ahead))
     return sorted(candidates, key=lambda candidate: candidate.quality.merit, reverse=True)

@@ -14,13 +14,25 @@ from profiletool.image.find.region import ALIKE, SeveralAlike
 
 _APART = 0.05  # overlap below which two masks are two things
 _EXTENT = 0.7  # overlap of a mask's own box with the one that was given
+_BY_FIT = 15.0  # merit of a mask that fills a box
+_NEAR, _LITTLE = 0.7, 0.06  # merit behind the best; share of its area that is worth a word
 _SAME_SHOWN = 0.9  # overlap of two masks that look the same
 
 
 def fitting(found: Sequence[Candidate], barred: BoolImage) -> list[Candidate]:
-    """Keep what fills a box, all but which is barred (H, W)."""
+    """Keep what fills a box, all but which is barred (H, W); what fills it best comes first."""
     box = _extent(~barred)
-    return [one for one in found if overlap(_extent(one.mask), box) >= _EXTENT]
+    fits = [(overlap(_extent(one.mask), box), one) for one in found]
+    told = [(fit, one.told()) for fit, one in fits if fit >= _EXTENT]
+    return [
+        one
+        for _, one in sorted(told, key=lambda pair: -pair[1].quality.merit - _BY_FIT * pair[0])
+    ]
+
+
+def round_point(found: Sequence[Candidate]) -> list[Candidate]:
+    """Believe what was pointed at; all hold the point."""
+    return [one.told() for one in found]
 
 
 def _extent(mask: BoolImage) -> BoolImage:
@@ -37,6 +49,34 @@ def different(found: Sequence[Candidate]) -> list[Candidate]:
         if all(overlap(one.mask, other.mask) < _SAME_SHOWN for other in kept):
             kept.append(one)
     return kept
+
+
+def doubt_of(found: Sequence[Candidate]) -> str:
+    """Say which part of the best candidate may not belong to it, or what may be missing.
+
+    A shadow, a reflection and a neighbour that touches the object all look so.
+    """
+    best = found[0]
+    area = float(best.mask.sum())
+    for other in found[1:]:
+        more, less = other.mask & ~best.mask, best.mask & ~other.mask
+        part, verb = (more, "left out") if more.sum() > less.sum() else (less, "taken in")
+        share = float(part.sum()) / area
+        near = best.quality.merit - other.quality.merit < _NEAR
+        if near and _EXTENT > share > _LITTLE and min(more.sum(), less.sum()) < _LITTLE * area:
+            return (
+                f"{100 * share:.0f} % of the object's area {_side(part, best.mask)} may be a "
+                f"shadow, a reflection or a neighbour and was {verb}: look at overlay.png"
+            )
+    return ""
+
+
+def _side(part: BoolImage, mask: BoolImage) -> str:
+    """Name where a part lies as seen from the middle of a mask."""
+    down, right = (np.argwhere(part).mean(axis=0) - np.argwhere(mask).mean(axis=0)).tolist()
+    if abs(down) > abs(right):
+        return "at the bottom" if down > 0 else "at the top"
+    return "on the right" if right > 0 else "on the left"
 
 
 def refuse_another(best: Candidate, found: Sequence[Candidate]) -> None:

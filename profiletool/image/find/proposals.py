@@ -72,6 +72,7 @@ def _guesses(view: View) -> Iterator[tuple[str, BoolImage]]:
             yield AT_POINT, disc(shape, view.point, share * min(shape))
     if view.boxed:
         yield "the box", _inscribed(~view.barred)
+        yield "the box", ~view.barred
         return
     middle = (width - 1) / 2.0, (height - 1) / 2.0
     yield "the middle", disc(shape, middle, 0.3 * min(shape))

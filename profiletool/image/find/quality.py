@@ -26,12 +26,15 @@ _SHEET, _NO_SHEET = 0.97, 0.9  # overlap with four corners of a sheet, and of wh
 
 # Fitted to photographs with true masks: which candidate is the object, and how likely it is.
 _MERIT = {
-    "edge": 2.1, "steady": 2.8, "peak": 1.5, "separation": 1.3, "ground": 3.7, "solidity": -1.2,
-    "border": -15.0, "width": -2.2, "middle": 4.1, "regained": 2.5, "agreement": 3.5,
-    "part": -1.7, "on_sheet": 5.3, "sheet": -2.2, "within": -1.3,
+    "edge": 1.9, "steady": 2.9, "peak": 1.6, "separation": 0.2, "ground": 2.7, "border": -16.2,
+    "width": -0.6, "middle": 6.6, "regained": 0.5, "agreement": 1.9, "part": -1.8,
+    "on_sheet": 6.2, "sheet": -2.4, "within": -1.7, "clear": 1.2,
 }  # fmt: skip
-_ODDS = {"edge": 2.0, "peak": 2.0, "separation": 2.0, "regained": 2.0, "agreement": 2.0}
-_BIAS = -6.0
+_ODDS = {
+    "edge": 0.4, "separation": 0.8, "ground": 0.5, "regained": 0.8, "lead": 0.6,
+    "fine_lead": 0.5, "told": 1.5,
+}  # fmt: skip
+_BIAS = -3.6
 
 
 @dataclass(frozen=True)
@@ -51,8 +54,6 @@ class Quality:
     ground : float
         Share of the pixels just outside whose colours are found along the border of the ground
         too: the picture's frame, or the rim of what the region lies on.
-    solidity : float
-        Area over that of the convex hull.
     border : float
         Share of the outline that runs along the frame.
     size : float
@@ -70,9 +71,11 @@ class Quality:
     sheet : float
         How clear what lies on it is, where it has four corners.
     within : float
-        How clear a larger candidate round it is, where that is no sheet.
-    lead : float
-        Merit ahead of the best candidate that is another.
+        How clear a larger candidate round it is against it, where that is no sheet, 0 to 1.
+    lead, fine_lead : float
+        Merit ahead of the best candidate that is another thing; that is another outline.
+    told : float
+        Whether the user has said that it lies there.
     """
 
     edge: float
@@ -80,7 +83,6 @@ class Quality:
     peak: float
     separation: float
     ground: float
-    solidity: float
     border: float
     size: float
     middle: float
@@ -92,6 +94,8 @@ class Quality:
     sheet: float = 0.0
     within: float = 0.0
     lead: float = 0.0
+    fine_lead: float = 0.0
+    told: float = 0.0
 
     @property
     def width(self) -> float:
@@ -126,7 +130,6 @@ def quality_of(view: View, mask: BoolImage, home: BoolImage | None = None) -> Qu
     rim = rim_of(view.lab, mask, round(float(np.clip(_REACH_SHARE * np.sqrt(area), *_REACH_PX))))
     edge, steady, peak = edge_support(rim)
     separation, ground = _colour_support(view.cell, mask, home)
-    hull = cv2.convexHull(rim.points.astype(np.float32))
     on_sheet = 0.0 if home is None else _four_cornered(home)
     return Quality(
         edge=edge,
@@ -134,7 +137,6 @@ def quality_of(view: View, mask: BoolImage, home: BoolImage | None = None) -> Qu
         peak=peak,
         separation=separation,
         ground=ground,
-        solidity=min(1.0, area / max(cv2.contourArea(hull), 1.0)),
         border=float(rim.on_frame.mean()),
         size=area / mask.size,
         middle=_middle(mask),

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from profiletool.errors import Unsure, UsageError
 from profiletool.image.find.candidates import BELIEVED, Candidate, find_candidates, judged
-from profiletool.image.find.choice import different, fitting, refuse_another
+from profiletool.image.find.choice import different, doubt_of, fitting, refuse_another, round_point
 from profiletool.image.find.ground import BoolImage, FloatImage
 from profiletool.image.find.hand import Hand, hand_at
 from profiletool.image.find.hint import Hint
@@ -29,12 +29,13 @@ _SHOWN = 4
 
 @dataclass(frozen=True)
 class Found:
-    """Share of object in every pixel, (H, W), what found it, how far it is believed, and held."""
+    """Share of object in every pixel, (H, W), what found it, how far it is believed, and doubts."""
 
     field: FloatImage
     method: str
     confidence: float = 1.0
     held: bool = False
+    doubt: str = ""
 
 
 def searched(
@@ -64,14 +65,14 @@ def searched(
     outside = None if hint.box is None else outside_of(hint.box, shape, step)
     point = None if hint.point is None else scaled(hint.point, step)
     view = view_of(small, paint_mask(polygons, shape, step), outside, point)
-    best, hand = _chosen(view, rgb, hint)
+    best, hand, doubt = _chosen(view, rgb, hint)
     mask = resized(best.mask, middling.shape)
     if middling.shape != small.shape:
         mask = polished(soft_lab(middling), mask, _RING_SHARE)
     field = edge_field(fine, mask, middling)
     if hint.box is not None:
         field[outside_of(hint.box, field.shape, fine_step)] = 0.0
-    return Found(field, best.method, best.confidence, hand is not Hand.NONE)
+    return Found(field, best.method, best.confidence, hand is not Hand.NONE, doubt)
 
 
 def fit_of(rgb: NDArray[np.uint8], mask: BoolImage, method: str) -> float:
@@ -81,7 +82,7 @@ def fit_of(rgb: NDArray[np.uint8], mask: BoolImage, method: str) -> float:
     return judged(view, resized(mask, small.shape), method).confidence
 
 
-def _chosen(view: View, rgb: NDArray[np.uint8], hint: Hint) -> tuple[Candidate, Hand]:
+def _chosen(view: View, rgb: NDArray[np.uint8], hint: Hint) -> tuple[Candidate, Hand, str]:
     found = find_candidates(view)
     if hint.box is not None:
         filling = fitting(found, view.barred)
@@ -90,11 +91,13 @@ def _chosen(view: View, rgb: NDArray[np.uint8], hint: Hint) -> tuple[Candidate, 
                 found, rgb, "nothing in `box` fills it; draw it close round the object"
             )
         found = filling
-    found = different(found)
+    elif hint.point is not None:
+        found = round_point(found)
+    all_, found = found, different(found)
     if hint.candidate is not None:
         if hint.candidate > min(len(found), _SHOWN):
             raise UsageError(f"`candidate` {hint.candidate}: only {len(found)} were found")
-        return replace(found[hint.candidate - 1], confidence=1.0), Hand.NONE
+        return found[hint.candidate - 1], Hand.NONE, ""
     best = found[0]
     if best.confidence < BELIEVED:
         raise _unsure(
@@ -114,7 +117,7 @@ def _chosen(view: View, rgb: NDArray[np.uint8], hint: Hint) -> tuple[Candidate, 
         )
     if hint.point is None:
         refuse_another(best, found)
-    return best, hand
+    return best, hand, doubt_of(all_)
 
 
 def _unsure(found: list[Candidate], rgb: NDArray[np.uint8], why: str) -> Unsure:

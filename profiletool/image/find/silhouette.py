@@ -118,7 +118,14 @@ def _outlined(picture: Picture, polygons: list[FloatArray], hint: Hint) -> Silho
         contour = (contour + 0.5) * step - 0.5
         mask = resized(mask, picture.rgb.shape[:2])
     return Silhouette(
-        contour, mask, found.method, noise * step, touches, found.confidence, found.held
+        contour,
+        mask,
+        found.method,
+        noise * step,
+        touches,
+        found.confidence,
+        found.held,
+        found.doubt,
     )
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from profiletool.image.find.across import rim_of, snapped, steps
-from profiletool.image.find.candidates import view_of
+from profiletool.image.find.view import view_of
 from profiletool.image.find.colours import cells, histogram, likelier, likeness
 from profiletool.image.find.quality import Quality, quality_of
 
