@@ -16,7 +16,8 @@ from profiletool.image.find.quality import Quality, quality_of
 from profiletool.image.find.region import SeveralAlike, region_on_ground
 from profiletool.image.find.view import View
 
-BELIEVED = 0.5  # a candidate of less confidence is nothing to design from
+BELIEVED = 0.45  # a candidate of less confidence is nothing to design from
+PLAIN = "plain ground"
 _SAME = 0.985  # overlap of regions that the polish makes one
 _HOST = 0.06  # of the frame: a smaller region is nobody's ground
 _SAME_POLISHED = 0.95
@@ -70,7 +71,7 @@ def find_candidates(view: View) -> list[Candidate]:
     found: list[_Region] = []
     missed: NoObject | None = None
     try:
-        _add(found, "plain ground", region_on_ground(view.lab, view.ground, view.point))
+        _add(found, PLAIN, region_on_ground(view.lab, view.ground, view.point))
     except NoObject as problem:
         missed = problem
         if isinstance(problem, SeveralAlike) and view.plain:
@@ -109,6 +110,9 @@ def _with_polished(view: View, found: Sequence[_Region]) -> list[_Region]:
     """Draw every outline anew; one that comes out much different counts as it was, too."""
     drawn, kept = [], []
     for one in found:
+        if one.method == PLAIN and view.plain:
+            drawn.append(one)  # as fine as it gets
+            continue
         mask = polished(view.lab, one.mask) & ~view.barred
         drawn.append(replace(one, mask=mask if mask.any() else one.mask))
         if overlap(mask, one.mask) < _SAME_POLISHED:
@@ -128,6 +132,7 @@ def _judged(view: View, mosaic: Mosaic, found: Sequence[_Region]) -> list[Candid
     common = np.array([[(one.mask & two.mask).sum() for two in found] for one in found], float)
     alike = common / (size[:, None] + size - common)
     beyond = (common > _MOSTLY * size[:, None]) & (size[:, None] < _SMALLER * size)
+    stands = [k for k, one in enumerate(found) if one.method == PLAIN and view.plain]
     related = []
     for number, quality in enumerate(made):
         others = np.delete(alike[number], number)
@@ -139,6 +144,7 @@ def _judged(view: View, mosaic: Mosaic, found: Sequence[_Region]) -> list[Candid
                 quality,
                 agreement=float(others.mean()) if len(others) else 1.0,
                 within=min(1.0, max(whole, default=0.0) / max(quality.clear, _UNCLEAR)),
+                plain=quality.edge if number in stands else 0.0,
                 sheet=max(borne, default=0.0) * quality.four_cornered,
             )
         )

@@ -26,15 +26,15 @@ _SHEET, _NO_SHEET = 0.97, 0.9  # overlap with four corners of a sheet, and of wh
 
 # Fitted to photographs with true masks: which candidate is the object, and how likely it is.
 _MERIT = {
-    "edge": 1.9, "steady": 2.9, "peak": 1.6, "separation": 0.2, "ground": 2.7, "border": -16.2,
-    "width": -0.6, "middle": 6.6, "regained": 0.5, "agreement": 1.9, "part": -1.8,
-    "on_sheet": 6.2, "sheet": -2.4, "within": -1.7, "clear": 1.2,
+    "edge": 1.4, "steady": 3.4, "peak": 1.3, "separation": 0.1, "ground": 2.7, "border": -17.1,
+    "width": -0.9, "middle": 6.1, "regained": 0.9, "agreement": 1.8, "part": -1.5,
+    "on_sheet": 6.0, "sheet": -2.3, "within": -1.4, "clear": 1.1, "plain": 2.5,
 }  # fmt: skip
 _ODDS = {
-    "edge": 0.4, "separation": 0.8, "ground": 0.5, "regained": 0.8, "lead": 0.6,
-    "fine_lead": 0.5, "told": 1.5,
+    "separation": 0.3, "ground": 2.1, "regained": 1.7, "lead": 0.6, "fine_lead": 0.6,
+    "told": 1.5,
 }  # fmt: skip
-_BIAS = -3.6
+_BIAS = -5.2
 
 
 @dataclass(frozen=True)
@@ -72,6 +72,8 @@ class Quality:
         How clear what lies on it is, where it has four corners.
     within : float
         How clear a larger candidate round it is against it, where that is no sheet, 0 to 1.
+    plain : float
+        How clear its edge is where it is what stands out from a ground of one smooth colour.
     lead, fine_lead : float
         Merit ahead of the best candidate that is another thing; that is another outline.
     told : float
@@ -93,6 +95,7 @@ class Quality:
     part: float = 0.0
     sheet: float = 0.0
     within: float = 0.0
+    plain: float = 0.0
     lead: float = 0.0
     fine_lead: float = 0.0
     told: float = 0.0

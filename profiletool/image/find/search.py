@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from profiletool.errors import Unsure, UsageError
-from profiletool.image.find.candidates import BELIEVED, Candidate, find_candidates, judged
+from profiletool.image.find.candidates import BELIEVED, PLAIN, Candidate, find_candidates, judged
 from profiletool.image.find.choice import different, doubt_of, fitting, refuse_another, round_point
 from profiletool.image.find.ground import BoolImage, FloatImage
 from profiletool.image.find.hand import Hand, hand_at
@@ -67,7 +67,7 @@ def searched(
     view = view_of(small, paint_mask(polygons, shape, step), outside, point)
     best, hand, doubt = _chosen(view, rgb, hint)
     mask = resized(best.mask, middling.shape)
-    if middling.shape != small.shape:
+    if middling.shape != small.shape and best.method != PLAIN:
         mask = polished(soft_lab(middling), mask, _RING_SHARE)
     field = edge_field(fine, mask, middling)
     if hint.box is not None:
