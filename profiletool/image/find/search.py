@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from profiletool.errors import Unsure, UsageError
+from profiletool.errors import NoObject, Unsure, UsageError
 from profiletool.image.find.candidates import BELIEVED, PLAIN, Candidate, find_candidates, judged
 from profiletool.image.find.choice import different, doubt_of, fitting, refuse_another, round_point
 from profiletool.image.find.ground import BoolImage, FloatImage
 from profiletool.image.find.hand import Hand, hand_at
 from profiletool.image.find.hint import Hint
+from profiletool.image.find.masks import overlap
 from profiletool.image.find.matte import edge_field
 from profiletool.image.find.mosaic import polished
+from profiletool.image.find.region import region_on_ground
 from profiletool.image.find.sizes import outside_of, reduced, resized, scaled
 from profiletool.image.find.view import View, soft_lab, view_of
 from profiletool.image.marker import paint_mask
@@ -24,6 +27,7 @@ from profiletool.records.units import FloatArray
 _MIDDLING_PIXELS = 400_000  # an outline is drawn anew at no more than this
 _VIEW_PIXELS = 90_000  # candidates are found and judged at no more than this
 _RING_SHARE = 0.015  # of the region's size: what the smaller view may have missed
+_SAME = 0.95  # overlap of one region found at two sizes
 _SHOWN = 4
 
 
@@ -66,13 +70,28 @@ def searched(
     point = None if hint.point is None else scaled(hint.point, step)
     view = view_of(small, paint_mask(polygons, shape, step), outside, point)
     best, hand, doubt = _chosen(view, rgb, hint)
-    mask = resized(best.mask, middling.shape)
-    if middling.shape != small.shape and best.method != PLAIN:
-        mask = polished(soft_lab(middling), mask, _RING_SHARE)
+    mask = _finer(middling, best, polygons, rgb.shape[0] / middling.shape[0])
     field = edge_field(fine, mask, middling)
     if hint.box is not None:
         field[outside_of(hint.box, field.shape, fine_step)] = 0.0
     return Found(field, best.method, best.confidence, hand is not Hand.NONE, doubt)
+
+
+def _finer(
+    rgb: NDArray[np.uint8], best: Candidate, polygons: list[FloatArray], step: float
+) -> BoolImage:
+    """Find a candidate's outline again in a larger picture (H, W, 3)."""
+    shape = rgb.shape[:2]
+    mask = resized(best.mask, shape)
+    if mask.shape == best.mask.shape:
+        return mask
+    if best.method == PLAIN:
+        view = view_of(rgb, paint_mask(polygons, shape, step))
+        with contextlib.suppress(NoObject):
+            stands = region_on_ground(view.lab, view.ground)
+            if overlap(stands, mask) > _SAME:
+                return stands
+    return polished(soft_lab(rgb), mask, _RING_SHARE)
 
 
 def fit_of(rgb: NDArray[np.uint8], mask: BoolImage, method: str) -> float:
