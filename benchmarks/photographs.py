@@ -92,9 +92,9 @@ def outcome(file: Path, truth: NDArray[np.bool_], kind: str, compare: bool) -> O
     )
 
 
-def outcomes(folder: Path, kind: str, compare: bool) -> Iterator[Outcome]:
+def outcomes(folder: Path, kind: str, compare: bool, every: int = 1) -> Iterator[Outcome]:
     """Go through a folder."""
-    for mask in sorted(folder.glob("*_mask.png")):
+    for mask in sorted(folder.glob("*_mask.png"))[::every]:
         stem = mask.name.removesuffix("_mask.png")
         file = next(f for f in folder.glob(f"{stem}.*") if f.suffix in (".png", ".jpg"))
         yield outcome(file, load_picture(mask).rgb[..., 0] > 127, kind, compare)
@@ -149,7 +149,7 @@ def main() -> None:
             "grabCut: median", "worst decile", "wrong", "s")  # fmt: skip
     rows, made = [], []
     for folder in arguments.folders:
-        found = list(outcomes(folder, arguments.hint, not arguments.no_grabcut))
+        found = list(outcomes(folder, arguments.hint, not arguments.no_grabcut, arguments.every))
         rows.append(row(folder.name, found))
         made += found
     rows.append(row("all", made))

@@ -18,7 +18,7 @@ from profiletool.image.find.view import View
 
 BELIEVED = 0.45  # a candidate of less confidence is nothing to design from
 PLAIN = "plain ground"
-_SAME = 0.985  # overlap of regions that the polish makes one
+_SAME = 0.97  # overlap of regions that the polish makes one
 _HOST = 0.06  # of the frame: a smaller region is nobody's ground
 _SAME_POLISHED = 0.95
 _MOSTLY, _SMALLER = 0.9, 0.85  # of a region: what lies in a larger one, and how much smaller it is
@@ -83,11 +83,6 @@ def find_candidates(view: View) -> list[Candidate]:
     if not found:
         raise missed or NoObject("no object found in the picture")
     return _judged(view, mosaic, _with_polished(view, found))
-
-
-def judged(view: View, mask: BoolImage, method: str) -> Candidate:
-    """Judge one region of a view by itself."""
-    return _judged(view, mosaic_of(view.lab), [_Region(mask, method)])[0]
 
 
 def _add(found: list[_Region], method: str, mask: BoolImage, host: int | None = None) -> None:

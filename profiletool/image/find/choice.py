@@ -25,8 +25,7 @@ def fitting(found: Sequence[Candidate], barred: BoolImage) -> list[Candidate]:
     fits = [(overlap(_extent(one.mask), box), one) for one in found]
     told = [(fit, one.told()) for fit, one in fits if fit >= _EXTENT]
     return [
-        one
-        for _, one in sorted(told, key=lambda pair: -pair[1].quality.merit - _BY_FIT * pair[0])
+        one for _, one in sorted(told, key=lambda pair: -pair[1].quality.merit - _BY_FIT * pair[0])
     ]
 
 

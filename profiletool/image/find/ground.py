@@ -74,7 +74,8 @@ def fit_ground(lab: FloatImage, usable: BoolImage, within: BoolImage | None = No
         A region that is the ground: its own border is looked at instead of the picture's.
     """
     height, width = lab.shape[:2]
-    border = _sampled(usable & (frame_of(usable.shape, _FRAME_SHARE) if within is None else border_of(within)))
+    looked_at = frame_of(usable.shape, _FRAME_SHARE) if within is None else border_of(within)
+    border = _sampled(usable & looked_at)
     if len(border[0]) < 2 * len(_POWERS):
         border = _sampled(usable)
     colours = lab[border].astype(np.float64)

@@ -26,7 +26,7 @@ _SLEEVE, _BEYOND = 0.03, 0.1  # more of a mask than this comes before the hand, 
 
 
 class Hand(Enum):
-    """What a hand does to an object: nothing, perhaps hides some of it, surely covers its outline."""
+    """What a hand does to an object: nothing, hides a little of its outline, covers it."""
 
     NONE = 0
     NEAR = 1

@@ -59,7 +59,7 @@ def mosaic_of(lab: FloatImage) -> Mosaic:
     steep = _steepness(lab)
     seeds = _seeds(steep)
     relief = np.clip(steep * 8.0, 0, 255).astype(np.uint8)
-    flooded = cv2.watershed(np.dstack([relief] * 3), seeds)
+    flooded = np.asarray(cv2.watershed(np.dstack([relief] * 3), seeds), np.int32)
     patch = _without_seams(flooded)
     return _laid_out(lab, patch)
 
@@ -85,7 +85,7 @@ def _steepness(lab: FloatImage) -> FloatImage:
 
 
 def _seeds(steep: FloatImage) -> NDArray[np.int32]:
-    """Number the calmest pixel of every square of a grid."""
+    """Give the calmest pixel of every square of a grid a number."""
     height, width = steep.shape
     rows, columns = -(-height // _PATCH_PX), -(-width // _PATCH_PX)
     margin = (0, rows * _PATCH_PX - height), (0, columns * _PATCH_PX - width)
@@ -112,20 +112,23 @@ def _bonds(
     patch: NDArray[np.int32], lab: FloatImage
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Neighbours, and what all pairs of pixels on their common border cost to part."""
-    ways = (np.s_[:, 1:], np.s_[:, :-1]), (np.s_[1:], np.s_[:-1])
-    steps = [((lab[one] - lab[other]) ** 2).sum(axis=2) for one, other in ways]
+    sides = ((patch[:, 1:], patch[:, :-1]), (patch[1:], patch[:-1]))
+    steps = [
+        ((one - other) ** 2).sum(axis=2)
+        for one, other in ((lab[:, 1:], lab[:, :-1]), (lab[1:], lab[:-1]))
+    ]
     typical = max(float(np.mean([step.mean() for step in steps])), 1e-3)
     keys, costs = [], []
     count = int(patch.max()) + 1
-    for (one, other), step in zip(ways, steps, strict=True):
-        a, b = patch[one], patch[other]
-        apart = a != b
-        low, high = np.minimum(a, b)[apart], np.maximum(a, b)[apart]
+    for (one, other), step in zip(sides, steps, strict=True):
+        apart = one != other
+        low, high = np.minimum(one, other)[apart], np.maximum(one, other)[apart]
         keys.append(low.astype(np.int64) * count + high)
-        costs.append(np.exp(-step[apart] / (2.0 * typical)))
+        costs.append(np.exp(-step[apart] / (2.0 * typical)).astype(np.float64))
     key, place = np.unique(np.concatenate(keys), return_inverse=True)
     cost = np.bincount(place, weights=np.concatenate(costs))
-    return np.stack([key // count, key % count], axis=1), _STIFF * cost
+    pairs = np.stack([key // count, key % count], axis=1)
+    return np.asarray(pairs, np.int64), np.asarray(_STIFF * cost, np.float64)
 
 
 def cut(

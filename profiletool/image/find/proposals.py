@@ -10,6 +10,7 @@ import numpy as np
 
 from profiletool.errors import NoObject
 from profiletool.image.find.ground import BoolImage, FloatImage, Ground, fit_ground, frame_of
+from profiletool.image.find.learned import learned_share
 from profiletool.image.find.masks import window_of
 from profiletool.image.find.mosaic import Mosaic, cut
 from profiletool.image.find.region import SeveralAlike, choose_object, region_on_ground
@@ -17,6 +18,7 @@ from profiletool.image.find.saliency import barrier, strangeness
 from profiletool.image.find.view import View
 from profiletool.records.request import Point
 
+LEARNED = "learned"
 AT_POINT = "colours round the point"
 _SIZES = 0.004, 0.85  # of the frame
 _ROUGH_PIXELS = 20_000  # of maps that take their time
@@ -41,6 +43,9 @@ def proposals(view: View, mosaic: Mosaic) -> Iterator[tuple[str, BoolImage]]:
         yield f"{method}, cut", _cut(view, mosaic, guess)
     for method, guess in _guesses(view):
         yield method, _cut(view, mosaic, guess)
+    learned = learned_share(view.rgb)
+    if learned is not None:
+        yield LEARNED, (learned > 0.5) & ~view.barred
 
 
 def _resized(image: FloatImage, shape: tuple[int, ...]) -> FloatImage:

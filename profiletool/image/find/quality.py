@@ -32,7 +32,7 @@ _MERIT = {
 }  # fmt: skip
 _ODDS = {
     "separation": 0.3, "ground": 2.1, "regained": 1.7, "lead": 0.6, "fine_lead": 0.6,
-    "told": 1.5,
+    "told": 2.5,
 }  # fmt: skip
 _BIAS = -5.2
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from profiletool.errors import NoObject, Unsure, UsageError
-from profiletool.image.find.candidates import BELIEVED, PLAIN, Candidate, find_candidates, judged
+from profiletool.image.find.candidates import BELIEVED, PLAIN, Candidate, find_candidates
 from profiletool.image.find.choice import different, doubt_of, fitting, refuse_another, round_point
 from profiletool.image.find.ground import BoolImage, FloatImage
 from profiletool.image.find.hand import Hand, hand_at
@@ -18,6 +18,7 @@ from profiletool.image.find.hint import Hint
 from profiletool.image.find.masks import overlap
 from profiletool.image.find.matte import edge_field
 from profiletool.image.find.mosaic import polished
+from profiletool.image.find.quality import quality_of
 from profiletool.image.find.region import region_on_ground
 from profiletool.image.find.sizes import outside_of, reduced, resized, scaled
 from profiletool.image.find.view import View, soft_lab, view_of
@@ -94,11 +95,11 @@ def _finer(
     return polished(soft_lab(rgb), mask, _RING_SHARE)
 
 
-def fit_of(rgb: NDArray[np.uint8], mask: BoolImage, method: str) -> float:
-    """Give the confidence in a mask that somebody else has made."""
+def fit_of(rgb: NDArray[np.uint8], mask: BoolImage) -> float:
+    """Say how clear a mask is that somebody else has made, 0 to 1."""
     small = reduced(rgb, max(1.0, math.sqrt(mask.size / _VIEW_PIXELS)))
     view = view_of(small, np.zeros(small.shape[:2], bool))
-    return judged(view, resized(mask, small.shape), method).confidence
+    return quality_of(view, resized(mask, small.shape)).clear
 
 
 def _chosen(view: View, rgb: NDArray[np.uint8], hint: Hint) -> tuple[Candidate, Hand, str]:
@@ -106,9 +107,7 @@ def _chosen(view: View, rgb: NDArray[np.uint8], hint: Hint) -> tuple[Candidate, 
     if hint.box is not None:
         filling = fitting(found, view.barred)
         if not filling:
-            raise _unsure(
-                found, rgb, "nothing in `box` fills it; draw it close round the object"
-            )
+            raise _unsure(found, rgb, "nothing in `box` fills it; draw it close round the object")
         found = filling
     elif hint.point is not None:
         found = round_point(found)

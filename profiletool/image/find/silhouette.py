@@ -10,10 +10,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from profiletool.errors import NoObject, Unsure, UsageError
-from profiletool.image.find.cut_out import cuts_out, opaque_part, page_in, without_alpha
+from profiletool.errors import Unsure, UsageError
 from profiletool.image.find.contour import largest_region, outline, smoothed
-from profiletool.image.find.ground import BoolImage, FloatImage
+from profiletool.image.find.cut_out import cuts_out, opaque_part, page_in, without_alpha
+from profiletool.image.find.ground import FloatImage
 from profiletool.image.find.hint import LEAST_PX, Hint, check_hint
 from profiletool.image.find.masks import (
     edges_touched,
@@ -150,7 +150,7 @@ def _given(rgb: NDArray[np.uint8], hint: Hint, step: int) -> Found:
             "black"
         )
     field = reduced(whole.view(np.uint8) * 255, step).astype(np.float32) / np.float32(255)
-    return Found(field, _GIVEN, fit_of(rgb, whole, _GIVEN))
+    return Found(field, _GIVEN, fit_of(rgb, whole))
 
 
 def _one_region(share: FloatImage, hint: Hint, step: int) -> FloatImage:

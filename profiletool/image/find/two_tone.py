@@ -38,7 +38,7 @@ def two_tones(rgb: NDArray[np.uint8]) -> FloatImage | None:
 
 
 def trimmed(mask: BoolImage) -> bool:
-    """Whether a picture is cut to its object's own size, so that meeting the frame means nothing."""
+    """Whether a picture is cut to its object's own size: to meet the frame means nothing then."""
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     height, width = mask.shape
     margins = rows[0], height - 1 - rows[-1], columns[0], width - 1 - columns[-1]

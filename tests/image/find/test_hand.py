@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from profiletool.errors import Unsure
-from profiletool.image.find.view import view_of
 from profiletool.image.find.hand import Hand, hand_at
 from profiletool.image.find.hint import Hint
 from profiletool.image.find.silhouette import find_silhouette
+from profiletool.image.find.view import view_of
 from profiletool.records.picture import Picture, Silhouette
 
 SHAPE = HEIGHT, WIDTH = 300, 400
