@@ -20,9 +20,9 @@ BELIEVED = 0.45  # a candidate of less confidence is nothing to design from
 PLAIN = "plain ground"
 _SAME = 0.97  # overlap of regions that the polish makes one
 _HOST = 0.06  # of the frame: a smaller region is nobody's ground
-_SAME_POLISHED = 0.95
+SAME_POLISHED = 0.95
 _MOSTLY, _SMALLER = 0.9, 0.85  # of a region: what lies in a larger one, and how much smaller it is
-_ANOTHER, _FAR = 0.8, 3.0  # overlap below which two are not one thing, and a lead that is enough
+ANOTHER, FAR = 0.8, 3.0  # overlap below which two are not one thing, and a lead that is enough
 _UNCLEAR = 0.05
 _ON_HOST = 0.7  # of its host: a larger region is the host itself
 
@@ -39,10 +39,6 @@ class Candidate:
     def confidence(self) -> float:
         """Chance that the mask is right, 0 to 1."""
         return self.quality.confidence
-
-    def told(self) -> Candidate:
-        """Give the same where the user has said that the object is there."""
-        return replace(self, quality=replace(self.quality, told=1.0))
 
 
 @dataclass(frozen=True)
@@ -110,7 +106,7 @@ def _with_polished(view: View, found: Sequence[_Region]) -> list[_Region]:
             continue
         mask = polished(view.lab, one.mask) & ~view.barred
         drawn.append(replace(one, mask=mask if mask.any() else one.mask))
-        if overlap(mask, one.mask) < _SAME_POLISHED:
+        if overlap(mask, one.mask) < SAME_POLISHED:
             kept.append(one)
     return drawn + kept
 
@@ -147,9 +143,9 @@ def _judged(view: View, mosaic: Mosaic, found: Sequence[_Region]) -> list[Candid
     candidates = []
     for number, (one, quality) in enumerate(zip(found, related, strict=True)):
         lead, fine = (
-            min((*(merits[number] - merits[alike[number] < share]), _FAR))
-            for share in (_ANOTHER, _SAME_POLISHED)
+            min((*(merits[number] - merits[alike[number] < share]), FAR))
+            for share in (ANOTHER, SAME_POLISHED)
         )
-        ahead = replace(quality, lead=max(lead, -_FAR), fine_lead=max(fine, -_FAR))
+        ahead = replace(quality, lead=max(lead, -FAR), fine_lead=max(fine, -FAR))
         candidates.append(Candidate(one.mask, one.method, ahead))
     return sorted(candidates, key=lambda candidate: candidate.quality.merit, reverse=True)

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import cv2
 import numpy as np
 
-from profiletool.image.find.candidates import BELIEVED, Candidate
+from profiletool.image.find.candidates import ANOTHER, BELIEVED, FAR, SAME_POLISHED, Candidate
 from profiletool.image.find.ground import BoolImage
 from profiletool.image.find.masks import overlap
 from profiletool.image.find.region import ALIKE, SeveralAlike
 
 _APART = 0.05  # overlap below which two masks are two things
 _EXTENT = 0.7  # overlap of a mask's own box with the one that was given
-_BY_FIT = 15.0  # merit of a mask that fills a box
+_BY_FIT, _BY_WIDTH = 8.0, 14.0  # merit of a mask that fills a box, of one that is small
 _NEAR, _LITTLE = 0.7, 0.06  # merit behind the best; share of its area that is worth a word
 _SAME_SHOWN = 0.9  # overlap of two masks that look the same
 
@@ -23,15 +24,33 @@ def fitting(found: Sequence[Candidate], barred: BoolImage) -> list[Candidate]:
     """Keep what fills a box, all but which is barred (H, W); what fills it best comes first."""
     box = _extent(~barred)
     fits = [(overlap(_extent(one.mask), box), one) for one in found]
-    told = [(fit, one.told()) for fit, one in fits if fit >= _EXTENT]
-    return [
-        one for _, one in sorted(told, key=lambda pair: -pair[1].quality.merit - _BY_FIT * pair[0])
-    ]
+    kept = [(fit, one) for fit, one in fits if fit >= _EXTENT]
+    return _told([one for _, one in kept], [_BY_FIT * fit for fit, _ in kept])
 
 
 def round_point(found: Sequence[Candidate]) -> list[Candidate]:
-    """Believe what was pointed at; all hold the point."""
-    return [one.told() for one in found]
+    """Put what lies most closely round a point first; all candidates hold it."""
+    return _told(found, [-_BY_WIDTH * one.quality.width for one in found])
+
+
+def _told(found: Sequence[Candidate], favour: Sequence[float]) -> list[Candidate]:
+    """Order candidates anew by what the user has said, and believe them the more."""
+    merits = [one.quality.merit + more for one, more in zip(found, favour, strict=True)]
+    order = sorted(range(len(found)), key=lambda number: -merits[number])
+    made = []
+    for number in order:
+        ahead = {
+            name: min(
+                (merits[number] - merits[other] for other in order
+                 if overlap(found[number].mask, found[other].mask) < share),
+                default=FAR,
+            )
+            for name, share in (("lead", ANOTHER), ("fine_lead", SAME_POLISHED))
+        }  # fmt: skip
+        limited = {name: max(-FAR, min(FAR, lead)) for name, lead in ahead.items()}
+        quality = replace(found[number].quality, told=1.0, **limited)
+        made.append(replace(found[number], quality=quality))
+    return made
 
 
 def _extent(mask: BoolImage) -> BoolImage:
