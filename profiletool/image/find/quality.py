@@ -34,6 +34,7 @@ _ODDS = {
     "separation": 0.3, "ground": 2.1, "regained": 1.7, "lead": 0.6, "fine_lead": 0.6,
     "told": 2.5,
 }  # fmt: skip
+_EDGELESS = 0.5  # with less of a firm edge, nothing else makes up for it
 _BIAS = -5.2
 
 
@@ -118,7 +119,8 @@ class Quality:
     @property
     def confidence(self) -> float:
         """Chance that the mask is the object's to a twentieth of its area, 0 to 1."""
-        return float(1.0 / (1.0 + np.exp(-_BIAS - self._sum(_ODDS))))
+        odds = 1.0 / (1.0 + np.exp(-_BIAS - self._sum(_ODDS)))
+        return float(odds * min(1.0, self.edge / _EDGELESS))
 
     def _sum(self, weights: Mapping[str, float]) -> float:
         return sum(weight * float(getattr(self, name)) for name, weight in weights.items())
