@@ -15,8 +15,6 @@ _SHAPE = 260, 260
 _ROW, _COLUMN = np.indices(_SHAPE).astype(float)
 _GREEN = np.array((96.0, 128.0, 112.0))
 _CREAM, _DARK = np.array((236.0, 228.0, 210.0)), np.array((58.0, 52.0, 50.0))
-    np.array(c, float) for c in ((96, 128, 112), (236, 228, 210), (58, 52, 50))
-)
 
 
 def _ball(x: float, y: float, wide: float, tall: float) -> FloatImage:

@@ -1,4 +1,4 @@
-"""Where the object could be: masks by several methods, none of which knows what it looks like."""
+"""Proposals for the object: masks by several methods that do not know what it looks like."""
 
 from __future__ import annotations
 
