@@ -16,7 +16,7 @@ from profiletool.image.find.quality import Quality, quality_of
 from profiletool.image.find.region import SeveralAlike, region_on_ground
 from profiletool.image.find.view import View
 
-BELIEVED = 0.45  # a candidate of less confidence is nothing to design from
+BELIEVED = 0.4  # a candidate of less confidence is nothing to design from
 PLAIN = "plain ground"
 _SAME = 0.97  # overlap of regions that the polish makes one
 _HOST = 0.06  # of the frame: a smaller region is nobody's ground

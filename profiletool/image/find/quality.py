@@ -1,4 +1,4 @@
-"""What speaks for a mask: its edge, its colours, its shape, and what it lies on or bears."""
+"""Evidence for a mask: its edge, its colours, its shape, and what it lies on or bears."""
 
 from __future__ import annotations
 

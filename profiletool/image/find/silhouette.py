@@ -112,7 +112,8 @@ def _outlined(picture: Picture, polygons: list[FloatArray], hint: Hint) -> Silho
     else:
         contour, noise = smoothed(outline(found.field, mask))
     touches = edges_touched(mask)
-    if found.method in _OUTRIGHT and trimmed(mask):
+    shown = found.field if picture.alpha is None else picture.alpha
+    if found.method in _OUTRIGHT and trimmed(shown > 0):
         touches = frozenset()
     if step > 1:
         contour = (contour + 0.5) * step - 0.5

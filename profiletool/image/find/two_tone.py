@@ -7,10 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from profiletool.image.find.ground import BoolImage, FloatImage, frame_of
+from profiletool.records.units import FloatArray
 
 _TONES_APART = 60.0  # 8 bit levels
 _OFF_TONE, _PURE = 14.0, 0.975  # what counts as a tone, and how much of a picture has one
 _TRIM_PX = 2
+_LOOKED_AT = 100_000  # pixels
 
 
 def two_tones(rgb: NDArray[np.uint8]) -> FloatImage | None:
@@ -18,23 +20,32 @@ def two_tones(rgb: NDArray[np.uint8]) -> FloatImage | None:
 
     The ground is the tone that most of the frame has; between the tones lie blurred edges only.
     """
-    grey = cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY)
+    sparse = max(1, round(float(np.sqrt(rgb[..., 0].size / _LOOKED_AT))))
+    tones = _tones(rgb[::sparse, ::sparse])
+    if tones is None:
+        return None
+    far, near = tones
+    shade = rgb.astype(np.float32)
+    step = (far - near).astype(np.float32)
+    share = (shade - near.astype(np.float32)) @ step / float(step @ step)
+    return np.asarray(np.clip(share, 0.0, 1.0), np.float32)
+
+
+def _tones(rgb: NDArray[np.uint8]) -> tuple[FloatArray, FloatArray] | None:
+    """Give the colours of object and ground, (3,) each, where there are no others."""
+    grey = cv2.cvtColor(np.ascontiguousarray(rgb), cv2.COLOR_RGB2GRAY)
     level, _ = cv2.threshold(grey, 0, 255, cv2.THRESH_BINARY | cv2.THRESH_OTSU)
     bright = grey > level
     if not bright.any() or bright.all():
         return None
-    frame = bright[frame_of(grey.shape, 0.01)].mean() > 0.5
-    object_, ground = (rgb[~bright], rgb[bright]) if frame else (rgb[bright], rgb[~bright])
-    far, near = (np.median(part[:: 1 + len(part) // 4000], axis=0) for part in (object_, ground))
+    light = bool(bright[frame_of(grey.shape, 0.01)].mean() > 0.5)
+    parts = (rgb[~bright], rgb[bright]) if light else (rgb[bright], rgb[~bright])
+    far, near = (np.median(part, axis=0) for part in parts)
     if float(np.linalg.norm(far - near)) < _TONES_APART:
         return None
-    shade = rgb.astype(np.float32)
-    off = [np.abs(shade - tone.astype(np.float32)).max(axis=2) for tone in (far, near)]
-    if float((np.minimum(*off) < _OFF_TONE).mean()) < _PURE:
-        return None
-    step = (far - near).astype(np.float32)
-    share = (shade - near.astype(np.float32)) @ step / float(step @ step)
-    return np.asarray(np.clip(share, 0.0, 1.0), np.float32)
+    off = [np.abs(rgb - tone).max(axis=2) for tone in (far, near)]
+    pure = float((np.minimum(*off) < _OFF_TONE).mean()) >= _PURE
+    return (far, near) if pure else None
 
 
 def trimmed(mask: BoolImage) -> bool:

@@ -191,7 +191,7 @@ def test_trimmed_cut_out_runs_into_nothing() -> None:
 def test_rounded_corners_are_no_matte() -> None:
     alpha = np.full(SHAPE, 255, np.uint8)
     alpha[:4, :4] = alpha[-4:, -4:] = 0
-    assert found_in(laid(disc(150, 110, 60)), alpha).method == "plain ground"
+    assert found_in(laid(disc(150, 110, 60)), alpha).method == "two tones"
 
 
 def test_matte_of_nothing_or_of_two() -> None:
