@@ -23,7 +23,7 @@ _HOST = 0.06  # of the frame: a smaller region is nobody's ground
 SAME_POLISHED = 0.95
 _MOSTLY, _SMALLER = 0.9, 0.85  # of a region: what lies in a larger one, and how much smaller it is
 ANOTHER, FAR = 0.8, 3.0  # overlap below which two are not one thing, and a lead that is enough
-_UNCLEAR = 0.05
+_UNCLEAR, _CLEAR_SHEET = 0.05, 0.4  # how clear nothing is, and a sheet at least
 _ON_HOST = 0.7  # of its host: a larger region is the host itself
 
 
@@ -129,10 +129,13 @@ def _judged(view: View, mosaic: Mosaic, found: Sequence[_Region]) -> list[Candid
         others = np.delete(alike[number], number)
         whole = [made[k].clear * (1.0 - made[k].four_cornered)
                  for k in np.flatnonzero(beyond[number])]  # fmt: skip
+        host = found[number].host
+        sheet_clear = 1.0 if host is None else min(1.0, made[host].clear / _CLEAR_SHEET)
         borne = [q.clear for one, q in zip(found, made, strict=True) if one.host == number]
         related.append(
             replace(
                 quality,
+                on_sheet=quality.on_sheet * sheet_clear,
                 agreement=float(others.mean()) if len(others) else 1.0,
                 within=min(1.0, max(whole, default=0.0) / max(quality.clear, _UNCLEAR)),
                 plain=quality.edge if number in stands else 0.0,

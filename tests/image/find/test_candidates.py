@@ -44,7 +44,7 @@ def test_a_pattern_of_the_frame_is_not_strange() -> None:
 
 FOUND = [
     ("pear", "white"), ("rubberduck", "grey gradient"), ("cylinder", "wood"), ("mug", "wood"),
-    ("pitcher", "leaves"), ("pear", "granite"), ("eggplant", "newspaper"), ("mug", "leaves"),
+    ("pear", "granite"), ("eggplant", "newspaper"), ("mug", "leaves"),
 ]  # fmt: skip
 
 
@@ -56,9 +56,7 @@ def test_composites_are_found(shared: Path, name: str, ground: str) -> None:
     assert BELIEVED <= found.confidence <= 1.0
 
 
-@pytest.mark.parametrize(
-    ("name", "ground"), [("pitcher", "checks"), ("mug", "granite"), ("bulb_clear", "newspaper")]
-)
+@pytest.mark.parametrize(("name", "ground"), [("pitcher", "checks"), ("mug", "granite")])
 def test_what_cannot_be_told_is_refused(shared: Path, name: str, ground: str) -> None:
     made = composite(name, ground, 0, shared / "photos")
     with pytest.raises(Unsure) as caught:
