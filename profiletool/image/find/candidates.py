@@ -17,7 +17,7 @@ from profiletool.image.find.region import SeveralAlike, region_on_ground
 from profiletool.image.find.view import View
 
 BELIEVED = 0.4  # a candidate of less confidence is nothing to design from
-PLAIN = "plain ground"
+PLAIN, _DOUBTED = "plain ground", "plain ground, doubted"
 _SAME = 0.97  # overlap of regions that the polish makes one
 _HOST = 0.06  # of the frame: a smaller region is nobody's ground
 SAME_POLISHED = 0.95
@@ -100,11 +100,14 @@ def _look_into(view: View, mosaic: Mosaic, found: list[_Region]) -> None:
 def _with_polished(view: View, found: Sequence[_Region]) -> list[_Region]:
     """Draw every outline anew; one that comes out much different counts as it was, too."""
     drawn, kept = [], []
-    for one in found:
-        if one.method == PLAIN and view.plain:
+    for region in found:
+        one = region
+        mask = polished(view.lab, one.mask) & ~view.barred
+        if one.method == PLAIN and overlap(mask, one.mask) < SAME_POLISHED:
+            one = replace(one, method=_DOUBTED)
+        elif one.method == PLAIN and view.plain:
             drawn.append(one)  # as fine as it gets
             continue
-        mask = polished(view.lab, one.mask) & ~view.barred
         drawn.append(replace(one, mask=mask if mask.any() else one.mask))
         if overlap(mask, one.mask) < SAME_POLISHED:
             kept.append(one)
