@@ -40,7 +40,6 @@ _DAMAGE = (
     OverflowError,
     EOFError,
     MemoryError,
-    NotImplementedError,
     RuntimeError,
     struct.error,
     zlib.error,
