@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from fem.actuator import Actuator, Window, chain
-from fem.gauze import THREAD_EA, Gauze
+from fem.gauze import THREAD_EA, Gauze, slack_on
 from fem.weight import Weight
 from profiletool.bending.model import Chain
 from profiletool.records.design import Design
@@ -83,12 +83,15 @@ def _made_of(
 ) -> dict[str, Any]:
     """Give all fields of an actuator but its length and windows."""
     thread = model.thread_factor * THREAD_EA * (gauze.thread_mm / _PAPER_THREAD_MM) ** 2
+    stiffness = thread * gauze.turns / gauze.pitch_mm
+    rubber = law_of(tube.rubber, model.nu)
     return {
         "diameter": tube.outer_diameter_mm,
         "wall": tube.wall_mm,
-        "rubber": law_of(tube.rubber, model.nu),
+        "rubber": rubber,
         "gauze": Gauze(
-            stiffness=thread * gauze.turns / gauze.pitch_mm,
+            stiffness=stiffness,
+            slack=slack_on(rubber.shear_modulus * tube.wall_mm, stiffness),
             allowance=float(np.radians(model.sector_extra_deg)),
         ),
         "weight": _weight(gauze, model, axes),
