@@ -208,14 +208,12 @@ def _single_threads(design: Design) -> BuiltMisfit:
     NotVerified
     """
     from fem.errors import FemError
-    from profiletool.verify.threads import with_threads
+    from profiletool.verify.threads import sheet_off
 
     try:
-        off = with_threads(design).threads_off_mm
+        return sheet_off(design)
     except FemError as error:
         raise NotVerified(f"with single threads: {error}") from error
-    assert off is not None
-    return off
 
 
 def _beside(model: ModelInputs) -> str:

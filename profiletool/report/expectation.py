@@ -28,7 +28,7 @@ def expectation(design: Design) -> Markup:
         "the finished actuator takes their errors out. The orange band beside the tube holds 95 % "
         "of builds after that."
     )
-    return joined((tag("p", said), _figures(built), _parts(built)))
+    return joined((tag("p", said), _figures(built), _parts(built), _threads(design)))
 
 
 def _figures(built: Built) -> Markup:
@@ -52,6 +52,18 @@ def _parts(built: Built) -> Markup:
     heads = ("What is off", "by", "before (mm RMS)", "pressure set (mm RMS)")
     said = "The share of each error: its standard deviation, which is its bound over √3"
     return table(heads, rows, said)
+
+
+def _threads(design: Design) -> Markup:
+    off = design.threads_off_mm
+    if off is None:
+        return joined(())
+    return tag(
+        "p",
+        "Finite elements smear the axial threads over the gauze. With the single threads that the "
+        f"template's sheet leaves whole the tube lies {_mm(off.as_set)} mm RMS beside that, "
+        f"{_mm(off.trimmed)} mm once the pressure is set.",
+    )
 
 
 def _mm(value: float | None) -> str:
