@@ -35,7 +35,7 @@ class Options:
     Attributes
     ----------
     tolerance, between : float
-        Residual over the pressure's forces at asked pressures, and at those in between.
+        Residual over the pressure's forces at the last asked pressure, and at those before it.
     aim : float
         Residual that a prediction may have.
     first, smallest : float
@@ -100,7 +100,9 @@ class Path:
                 count = max(1, int(np.ceil((target - pressure) / step - 1e-6)))
                 asked = count == 1 and number <= len(pressures)
                 trial = target if count == 1 else pressure + (target - pressure) / count
-                state, first = self._try(trial, None, asked)
+                state, first = self._try(
+                    trial, None, asked, tight=asked and number == len(pressures)
+                )
                 if state is not None:
                     step = (trial - pressure) * _rate(options.aim / first)
                     self._careful = step < 5.0 * options.smallest * mu
@@ -126,10 +128,10 @@ class Path:
                     step = shorter
 
     def _try(
-        self, pressure: float, volume: float | None, asked: bool
+        self, pressure: float, volume: float | None, asked: bool, *, tight: bool
     ) -> tuple[Equilibrium | None, float]:
         """Predict and correct; give the equilibrium and the prediction's residual."""
-        loose = bool(self._states) and not (asked or self._careful)
+        loose = bool(self._states) and not (tight or self._careful)
         tolerance = self._options.between if loose else self._options.tolerance
         pose, pressure = self._predict(pressure, volume)
         done = correct(self._system, self._chart, pose, pressure, tolerance, volume)
@@ -227,7 +229,8 @@ class Path:
         for _ in range(_LIMIT_STEPS):
             before = self._states[-1]
             volume = before.forces.volume + grow
-            state, first = self._try(before.pressure, min(volume, end), self.critical is not None)
+            asked = self.critical is not None
+            state, first = self._try(before.pressure, min(volume, end), asked, tight=asked)
             if state is None:
                 grow *= 0.4
                 if grow < least:
