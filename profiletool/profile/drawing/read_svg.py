@@ -25,7 +25,7 @@ from profiletool.records.units import FloatArray
 _DAMAGE = (ValueError, TypeError, IndexError, KeyError, AttributeError, ArithmeticError)
 
 
-def read_svg(data: bytes) -> list[Polyline]:
+def read_svg(data: bytes, layer=None):
     """Read the chains of a drawing.
 
     Parameters
@@ -65,7 +65,9 @@ def read_svg(data: bytes) -> list[Polyline]:
     except _DAMAGE as error:
         reason = f" ({error})" if str(error) else ""
         raise UnreadableInput(f"values that SVG does not know{reason}; export again") from None
-    return join(_without_page(pieces, drawing.width, drawing.height))
+    from profiletool.profile.drawing.drawn import Drawn
+    from profiletool.records.profile import DrawnUnit
+    return Drawn(join(_without_page(pieces, drawing.width, drawing.height)),DrawnUnit())
 
 
 def _pieces(drawing: Any) -> Iterator[tuple[Polyline, bool]]:
