@@ -16,6 +16,7 @@ _ALIKE = 5.0  # a chain this many times as long as all others is the profile, th
 _WIDE = 0.003  # of a drawing's diagonal: a gap that is closed with a note
 _NEAR_SHARE, _NEAR_STEPS, _NEAR_MOST = 0.005, 2.0, 0.05  # how near ends lie that were meant to meet
 _LEAST_INNER = 0.25  # of an outline's area: a shape in it that is told
+_DENSE = 12  # points from which on their spacing says anything
 _WHOLE = 0.8  # of an open line's length: an outline of all lines that is meant instead
 MAX_CLOSE_PAIRS = 2e7  # of pieces of lines that might cross
 
@@ -62,12 +63,16 @@ def near_closed(chain: Polyline) -> Choice:
         return Choice(chain)
     steps = np.hypot(*np.diff(points, axis=0).T)
     gap, length = float(np.hypot(*(points[-1] - points[0]))), float(steps.sum())
-    dense = gap <= _NEAR_STEPS * float(np.median(steps)) and gap <= _NEAR_MOST * length
+    dense = (
+        len(steps) >= _DENSE
+        and gap <= _NEAR_STEPS * float(np.median(steps))
+        and gap <= _NEAR_MOST * length
+    )
     if not (dense or gap <= _NEAR_SHARE * length):
         return Choice(chain)
     x, y = points[0]
     note = f"the outline's ends are {gap:.2g} mm apart at ({x:.1f}, {y:.1f}): it was closed"
-    if gap > _NEAR_SHARE * length or dense:
+    if dense:
         return Choice(Polyline(points, True), (note,))
     return Choice(clean(points, False, gap * 1.001), (note,))
 
@@ -75,7 +80,7 @@ def near_closed(chain: Polyline) -> Choice:
 def _plain(chains: Sequence[Polyline]) -> Choice | None:
     """Take the chain that is round all others or far longer; None where no closed one is."""
     closed = max((c for c in chains if c.closed), key=lambda c: c.length, default=None)
-    if closed is not None and all(inside(c, closed) for c in chains):
+    if closed is not None and all(lies_in(c, closed) for c in chains):
         return Choice(closed)
     longest = _outstanding(chains)
     if longest is None or longest.closed or len(chains) == 1:
@@ -88,7 +93,7 @@ def _plain(chains: Sequence[Polyline]) -> Choice | None:
 def _outstanding(chains: Sequence[Polyline]) -> Polyline | None:
     ranked = sorted(chains, key=lambda c: c.length, reverse=True)
     first = ranked[0]
-    outside = [c for c in ranked[1:] if not (first.closed and inside(c, first))]
+    outside = [c for c in ranked[1:] if not (first.closed and lies_in(c, first))]
     return None if outside and outside[0].length * _ALIKE > first.length else first
 
 
@@ -148,7 +153,7 @@ def tangled(chains: Sequence[Polyline]) -> bool:
     return every * sum(len(tree.query(piece)) for piece in pieces[::every]) > MAX_CLOSE_PAIRS
 
 
-def inside(inner: Polyline, outer: Polyline) -> bool:
+def lies_in(inner: Polyline, outer: Polyline) -> bool:
     """Whether one chain's box lies in that of another."""
     low, high = outer.box
     return bool(np.all(inner.box[0] >= low - JOIN_MM) and np.all(inner.box[1] <= high + JOIN_MM))

@@ -75,7 +75,8 @@ class _Walk:
     def drawn(self, entities: Any, within: str = "", depth: int = 0) -> Iterator[Any]:
         """Yield what is drawn of entities that stand in a block placed on the layer ``within``."""
         if depth > _MAX_DEPTH:
-            raise UnreadableInput("blocks within each other without end; explode them")
+            self.left["block within itself"] += 1
+            return
         for entity in entities:
             self.met += 1
             if self.met > MAX_ENTITIES:
@@ -107,13 +108,9 @@ class _Walk:
         if block is None or block.block.is_xref or block.block.is_xref_overlay:
             self.left["external reference"] += 1
             return
-        if max(entity.dxf.get("row_count", 1), 1) * max(entity.dxf.get("column_count", 1), 1) > (
-            MAX_ENTITIES
-        ):
-            raise UnreadableInput("a block in far too many copies; explode it")
-        self.met += len(block)
-        if self.met > MAX_ENTITIES:
-            raise UnreadableInput(f"more than {MAX_ENTITIES} lines and curves; simplify it")
+        if entity.mcount * max(len(block), 1) > MAX_ENTITIES:
+            self.left["block of far too much"] += 1
+            return
         for one in entity.multi_insert() if entity.mcount > 1 else (entity,):
             yield from self.drawn(one.virtual_entities(), layer, depth + 1)
 

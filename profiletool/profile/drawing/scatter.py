@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from profiletool.profile.curve import arc_length, points_at, smoothing_width
+from profiletool.profile.curve import arc_length, local_fits, points_at, smoothing_width
 from profiletool.profile.drawing.chain import Polyline
 from profiletool.records.units import FloatArray
 
 _LEAST_POINTS = 60
+_REACH = 8  # points in half a window
 _ALTERNATING = 0.45  # of neighbours that turn to and fro; a smooth line has none, scatter 0.7
 _LEAST_WIDTH, _MOST_WIDTH = 0.01, 0.05  # of the outline's diagonal: windows that matter
 _SECOND_NORM = np.sqrt(1.5)  # of independent scatter in a point's distance to its chord
@@ -54,15 +55,12 @@ def scatter_of(chain: Polyline) -> float:
 
 def _smoothed(points: FloatArray, closed: bool, half: float) -> FloatArray:
     """Fit cubics over +-``half`` around points spaced evenly along the line."""
-    from scipy.signal import savgol_filter
-
     line = np.vstack([points, points[:1]]) if closed else points
     s = arc_length(line)
-    count = max(round(float(s[-1]) / (half / 8.0)), 32)
+    count = max(round(float(s[-1]) / (half / _REACH)), 32)
     at = np.linspace(0.0, s[-1], count, endpoint=not closed)
     even = points_at(at, s, line)
-    window = 2 * 8 + 1
-    smooth = savgol_filter(even, window, 3, axis=0, mode="wrap" if closed else "interp")
-    if not closed:
-        smooth[[0, -1]] = even[[0, -1]]
-    return np.asarray(smooth, dtype=np.float64)
+    if closed:
+        even = np.concatenate([even[-_REACH:], even, even[:_REACH]])
+    smooth, _ = local_fits(even, float(s[-1]) / count, _REACH)
+    return smooth[_REACH:-_REACH] if closed else np.vstack([even[:1], smooth[1:-1], even[-1:]])
