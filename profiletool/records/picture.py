@@ -26,6 +26,8 @@ class Picture:
         As Pillow names it: "PNG", "JPEG", ...
     focal_px : float or None
         Focal length in pixels, where the file tells its 35 mm equivalent; some per cent off.
+    notes : tuple of str
+        What the user should know of how the file was read.
     """
 
     rgb: NDArray[np.uint8]
@@ -33,6 +35,7 @@ class Picture:
     mm_per_px: float | None
     format: str
     focal_px: float | None = None
+    notes: tuple[str, ...] = ()
 
     @property
     def middle(self) -> FloatArray:

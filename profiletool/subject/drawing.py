@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from profiletool.errors import NoScale, UsageError
+from profiletool.errors import NoObject, NoScale, UsageError
+from profiletool.profile.target import Reach, profile_of_line, profile_of_object
 from profiletool.records.picture import Scale
 from profiletool.records.profile import DrawnLine, DrawnUnit, Profile
 from profiletool.records.request import Look, ScaleRequest
@@ -29,7 +30,24 @@ class SeenLine:
     closed: bool
     scale: Scale
     rotated_deg: float
+    unit: DrawnUnit
     notes: tuple[str, ...]
+
+    def profile(self, reach: Reach) -> Profile:
+        """Give the profile that a tube follows.
+
+        Raises
+        ------
+        NoObject
+            There is none; where the file's unit may be why, the message names it.
+        """
+        make = profile_of_object if self.closed else profile_of_line
+        try:
+            return make(self.points, reach)
+        except NoObject as error:
+            if self.scale.source != "vector" or not self.unit.source:
+                raise
+            raise NoObject(f"{error} ({self.unit.source}; `height_mm` overrides it)") from None
 
     def told(self, profile: Profile) -> str:
         """Say what is followed of it."""
@@ -64,7 +82,7 @@ def see_drawing(drawn: DrawnLine, asked: ScaleRequest, look: Look) -> SeenLine:
     notes = (*drawn.notes, *_contradictions(size, scale, drawn.unit, asked))
     if scale.source == "vector" and drawn.unit.assumed:
         notes = (f"{drawn.unit.source}; `height_mm` or `width_mm` settle it", *notes)
-    return SeenLine(points * scale.mm_per_px, drawn.closed, scale, turn, notes)
+    return SeenLine(points * scale.mm_per_px, drawn.closed, scale, turn, drawn.unit, notes)
 
 
 def _scale(size: FloatArray, unit: DrawnUnit, asked: ScaleRequest) -> Scale:

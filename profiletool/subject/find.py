@@ -12,7 +12,7 @@ from profiletool.errors import NoObject
 from profiletool.image.load import load_picture
 from profiletool.profile.drawing.load import SUFFIXES, load_vector
 from profiletool.profile.side import top_middle
-from profiletool.profile.target import Reach, profile_of_line, profile_of_object
+from profiletool.profile.target import Reach, profile_of_object
 from profiletool.records.picture import Picture, Scale, Silhouette
 from profiletool.records.profile import DrawnLine, Profile
 from profiletool.records.request import Look, Request
@@ -75,12 +75,10 @@ def find_subject(request: Request, say: Callable[[str], None]) -> Subject:
     if given is None and request.file.suffix.lower() in SUFFIXES:
         given = load_vector(request.file, request.look.layer)
     if isinstance(given, DrawnLine):
-        seen_line = see_drawing(given, request.scale, request.look)
-        make = profile_of_object if given.closed else profile_of_line
-        profile = make(seen_line.points, reach)
-        say(seen_line.told(profile))
-        scale, turn = seen_line.scale, seen_line.rotated_deg
-        return Subject(None, None, scale, None, profile, turn, seen_line.notes)
+        line = see_drawing(given, request.scale, request.look)
+        profile = line.profile(reach)
+        say(line.told(profile))
+        return Subject(None, None, line.scale, None, profile, line.rotated_deg, line.notes)
     picture = load_picture(request.file) if given is None else given
     seen = see(picture, request.scale, request.look, say)
     silhouette, scale = seen.silhouette, seen.scale
@@ -99,8 +97,9 @@ def find_subject(request: Request, say: Callable[[str], None]) -> Subject:
     )
     reach = replace(reach, noise_mm=silhouette.noise_px * k, spacing_mm=k)
     profile = profile_of_object(outline, reach)
+    notes = (*picture.notes, *seen.notes)
     place = float(origin[0]), float(origin[1])
-    return Subject(seen.picture, silhouette, scale, place, profile, seen.rotated_deg, seen.notes)
+    return Subject(seen.picture, silhouette, scale, place, profile, seen.rotated_deg, notes)
 
 
 def digest_of(request: Request) -> str:

@@ -52,8 +52,9 @@ def choose(chains: Sequence[Polyline]) -> Choice:
             "gaps and delete construction lines that touch it, or choose a `layer`"
         )
     closed = near_closed(found.chain)
-    inside = inner_shapes(closed.chain, chains, _LEAST_INNER)
-    return Choice(closed.chain, (*notes, *found.notes, *closed.notes, *inside))
+    whole = any(found.chain is chain for chain in chains)
+    inner = inner_shapes(closed.chain, chains, _LEAST_INNER) if whole else ()
+    return Choice(closed.chain, (*notes, *found.notes, *closed.notes, *inner))
 
 
 def near_closed(chain: Polyline) -> Choice:

@@ -10,6 +10,8 @@ from profiletool.records.units import MM_PER_INCH
 if TYPE_CHECKING:
     from ezdxf.document import Drawing
 
+_RARE_MM = {"microinches": 25.4e-6, "mils": 0.0254, "yards": 914.4, "miles": 1609.344e3}  # not ezdxf's
+
 
 def unit_of(drawing: Drawing, data: bytes) -> DrawnUnit:
     """Give the unit of a drawing.
@@ -28,9 +30,9 @@ def unit_of(drawing: Drawing, data: bytes) -> DrawnUnit:
         unit = InsertUnits(drawing.header.get("$INSUNITS", 0))
     if unit is not InsertUnits.Unitless:
         name = unit.name.lower()
-        return DrawnUnit(
-            conversion_factor(unit, InsertUnits.Millimeters), f"the drawing's unit is {name}"
-        )
+        mm = _RARE_MM.get(name)
+        mm = conversion_factor(unit, InsertUnits.Millimeters) if mm is None else mm
+        return DrawnUnit(mm, f"the drawing's unit is {name}")
     if b"$MEASUREMENT" in data and drawing.header.get("$MEASUREMENT", 1) == 0:
         return DrawnUnit(
             MM_PER_INCH, "the drawing names no unit, and its $MEASUREMENT says inches",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import struct
 from collections.abc import Iterable, Iterator
+from io import BytesIO
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 MAX_SPLINE_POINTS = 15_000  # of all splines: they are slow
 MAX_LINES = 300_000  # of text
 MAX_BINARY_BYTES = 2_000_000
+_HEADER = b"0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1015\n0\nENDSEC\n"
 _FRAME_FLAG = 16  # of a polyline's vertex: a control point
 _FAR_TIMES = 1e4  # a place so many times as far off as MAX_COORDINATE_MM loses digits
 _FLAT_SHARE = 1e-6  # of a drawing's size
@@ -119,7 +121,15 @@ def _open(path: Path) -> Drawing:
     try:
         return readfile(path)
     except (DXFError, *_DAMAGE):
+        pass
+    try:
         drawing, auditor = recover.readfile(path)
+    except (DXFError, *_DAMAGE):
+        data = path.read_bytes()
+        if b"$ACADVER" in data:
+            raise
+        # Without a header ezdxf takes it for R12, which knows no LWPOLYLINE.
+        drawing, auditor = recover.read(BytesIO(_HEADER + data))
     if auditor.has_errors:
         raise DXFStructureError(f"{len(auditor.errors)} errors beyond repair")
     return drawing
