@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 
+import cv2
 import numpy as np
 
 from profiletool.errors import NoScale, UsageError
 from profiletool.image.find.masks import thickness
 from profiletool.image.marker import find_markers
+from profiletool.image.marker_faults import is_clear, why_unread
 from profiletool.image.sheet.parallax import (
     LARGEST_SHARE,
     PRINT_SHARE,
@@ -21,6 +23,7 @@ from profiletool.image.sheet.parallax import (
 from profiletool.records.making import check_scale
 from profiletool.records.picture import Picture, Scale, Silhouette
 from profiletool.records.request import ScaleRequest
+from profiletool.records.units import FloatArray
 
 _AGREEMENT = 0.02  # markers, and the sides of one, differ by less or are not trusted
 _SQUARENESS = 0.1
@@ -119,14 +122,42 @@ def _marker_scale(
     return Scale(k * shrinkage(t, distance), "marker", share)
 
 
-def _marker_side_px(picture: Picture) -> tuple[float, float]:
-    """Mean side of the markers, px, and by how much of it the sides scatter."""
+def markers_for(picture: Picture, asked: ScaleRequest) -> list[FloatArray]:
+    """Find the markers of a picture whose scale may be a marker's, (4, 2) px each.
+
+    Raises
+    ------
+    NoScale
+        The scale hangs on a marker, and none is read or none is clear.
+    """
+    if asked.marker_mm is None:
+        return []
+    if asked.height_mm is None and asked.width_mm is None and asked.mm_per_px is None:
+        _clear_markers(picture)
+    return find_markers(picture)
+
+
+def _clear_markers(picture: Picture) -> list[FloatArray]:
     markers = find_markers(picture)
     if not markers:
+        why = why_unread(picture)
         raise NoScale(
-            "no ArUco DICT_4X4_50 marker found; show it whole, sharp and with its white margin, "
-            "or give `height_mm` or `width_mm`"
+            f"no ArUco DICT_4X4_50 marker was read{f': {why}' if why else ''}; show it whole, "
+            "sharp and with its white margin, or give `height_mm` or `width_mm`"
         )
+    grey = np.asarray(cv2.cvtColor(picture.rgb, cv2.COLOR_RGB2GRAY), np.uint8)
+    clear = [quad for quad in markers if is_clear(grey, quad)]
+    if not clear:
+        raise NoScale(
+            "something touches or covers the marker's edge, which makes its size wrong; leave its "
+            "white margin free, or give `height_mm` or `width_mm`"
+        )
+    return clear
+
+
+def _marker_side_px(picture: Picture) -> tuple[float, float]:
+    """Mean side of the markers, px, and by how much of it the sides scatter."""
+    markers = _clear_markers(picture)
     sides = np.array([np.hypot(*(np.roll(quad, -1, axis=0) - quad).T) for quad in markers])
     if (np.ptp(sides, axis=1) > _SQUARENESS * sides.mean(axis=1)).any():
         raise NoScale(

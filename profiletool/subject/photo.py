@@ -12,8 +12,7 @@ from profiletool.errors import NoObject
 from profiletool.image.find.hint import Hint, check_hint
 from profiletool.image.find.silhouette import find_silhouette
 from profiletool.image.load import load_mask
-from profiletool.image.marker import find_markers
-from profiletool.image.scale import scale_of
+from profiletool.image.scale import markers_for, scale_of
 from profiletool.image.sheet.rectify import Rectified, edge_warnings, rectify
 from profiletool.profile.symmetry import LARGEST_MISMATCH, mirrored_mean, symmetry_of
 from profiletool.profile.upright import turned, turned_px, upright_of, y_up
@@ -108,8 +107,7 @@ def _found(
     picture: Picture, sheet: Rectified | None, hint: Hint, asked: ScaleRequest
 ) -> Silhouette:
     if sheet is None:
-        markers = find_markers(picture) if asked.marker_mm is not None else []
-        return find_silhouette(picture, markers, hint)
+        return find_silhouette(picture, markers_for(picture, asked), hint)
     return find_on_sheet(picture, sheet, hint, asked)
 
 
