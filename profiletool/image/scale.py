@@ -32,7 +32,9 @@ _SCANNER_SHARE = 0.005
 _FAR_OFF = 4.0  # factor that unknown lenses and cropped pictures may make of a distance
 
 
-def scale_of(picture: Picture, silhouette: Silhouette, request: ScaleRequest) -> Scale:
+def scale_of(
+    picture: Picture, silhouette: Silhouette, request: ScaleRequest, flat: bool = False
+) -> Scale:
     """Settle the scale of a picture.
 
     Parameters
@@ -43,6 +45,8 @@ def scale_of(picture: Picture, silhouette: Silhouette, request: ScaleRequest) ->
         Its contour's extent is the object's height and width.
     request : ScaleRequest
         What the user gave.
+    flat : bool
+        Whether the object is flat and lies in a marker's plane.
 
     Returns
     -------
@@ -69,6 +73,8 @@ def scale_of(picture: Picture, silhouette: Silhouette, request: ScaleRequest) ->
     if request.mm_per_px is not None:
         return Scale(request.mm_per_px, "mm-per-px")
     if request.marker_mm is not None:
+        if flat:
+            return marker_scale(picture, request.marker_mm)
         thin_px = thickness(silhouette.contour_px)
         return _marker_scale(picture, thin_px, request.marker_mm, request.camera_distance_mm)
     if picture.mm_per_px is not None:
@@ -119,7 +125,8 @@ def _marker_scale(
         parallax = 1.0 / shrinkage(t, distance) - 1.0 + left.shape
         return Scale(k, "marker", math.hypot(corners, parallax))
     share = math.hypot(corners, left.distance, left.shape)
-    return Scale(k * shrinkage(t, distance), "marker", share)
+    near = shrinkage(t, distance)
+    return Scale(k * near, "marker", share, 2.0 * t, 1.0 / near - 1.0)
 
 
 def markers_for(picture: Picture, asked: ScaleRequest) -> list[FloatArray]:

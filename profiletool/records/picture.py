@@ -86,11 +86,17 @@ class Scale:
     error_share : float or None
         By how much of itself the number may be off, about two standard deviations; None where
         nothing is known of it.
+    round_mm : float or None
+        Thickness of the round body that the object was taken for; None where that did not matter.
+    flat_share : float
+        By how much of itself a flat object is larger.
     """
 
     mm_per_px: float
     source: Literal["height", "width", "mm-per-px", "marker", "sheet", "resolution", "vector"]
     error_share: float | None = None
+    round_mm: float | None = None
+    flat_share: float = 0.0
 
     @property
     def measured_error(self) -> float | None:

@@ -12,6 +12,7 @@ from profiletool.image.find.masks import thickness
 from profiletool.image.sheet.parallax import (
     DISTANCE_SHARE,
     LARGEST_SHARE,
+    Remaining,
     axis_height,
     remaining,
     shrinkage,
@@ -58,6 +59,7 @@ def measure(
     silhouette: Silhouette,
     camera_distance_mm: float | None = None,
     revolved: bool = True,
+    flat: bool = False,
 ) -> Measured:
     """Give an object's outline and scale at the height of its axis.
 
@@ -70,6 +72,8 @@ def measure(
         From the lens to the sheet, where it was measured; else the picture tells it.
     revolved : bool
         Whether the object may be a body of revolution; if not, its outline stays as it is seen.
+    flat : bool
+        Whether it is flat and lies on the sheet: its outline and the sheet's scale are its own.
 
     Raises
     ------
@@ -87,8 +91,12 @@ def measure(
     foot, high = np.array(camera.foot_px), camera.height_mm
     contour = silhouette.contour_px
     size = np.ptp(contour, axis=0)
-    section = lying_section(contour * k, np.append(foot * k, high)) if revolved else None
-    t = axis_height(0.5 * thickness(contour) * k, high) if section is None else section.height_mm
+    around = revolved and not flat
+    section = lying_section(contour * k, np.append(foot * k, high)) if around else None
+    if section is not None:
+        t = section.height_mm
+    else:
+        t = 0.0 if flat else axis_height(0.5 * thickness(contour) * k, high)
     if t > LARGEST_SHARE * high:
         raise NoScale(
             f"a camera {high:.0f} mm above the sheet is too near for an object so thick; "
@@ -98,13 +106,16 @@ def measure(
         contour = foot + (section.points / k - foot) / shrinkage(t, high)
     aside = float(np.hypot(*(contour.mean(axis=0) - foot))) * k
     left = remaining(t, camera, aside, section is not None)
+    if flat:
+        left = Remaining(0.0, 0.0)
     edges = math.hypot(silhouette.noise_px, _EDGE_PX)
     noise = 2.0 * math.sqrt(2.0) * edges / float(size.min())
     measured = math.hypot(2.0 * made.error_share, left.distance, noise)
     share = math.hypot(measured, left.shape)
     return Measured(
         silhouette=replace(silhouette, contour_px=contour),
-        scale=Scale(k * shrinkage(t, high), "sheet", share),
+        scale=Scale(k * shrinkage(t, high), "sheet", share, None if flat else 2.0 * t,
+                    1.0 / shrinkage(t, high) - 1.0),
         height_mm=t,
         round=section is not None,
         measured_share=measured,
