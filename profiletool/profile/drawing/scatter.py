@@ -26,7 +26,7 @@ def without_scatter(chain: Polyline) -> tuple[Polyline, tuple[str, ...]]:
     points = chain.points
     length, diagonal = chain.length, float(np.hypot(*np.ptp(points, axis=0)))
     half = min(smoothing_width(noise, length / len(points)), _MOST_WIDTH * diagonal)
-    if half < _LEAST_WIDTH * diagonal:
+    if not half > _LEAST_WIDTH * diagonal:
         return chain, ()
     note = f"the points scatter by {noise:.2g} mm: they were smoothed over {2.0 * half:.1f} mm"
     return Polyline(_smoothed(points, chain.closed, half), chain.closed), (note,)
