@@ -15,7 +15,6 @@ from profiletool.records.units import FloatArray
 _ALIKE = 5.0  # a chain this many times as long as all others is the profile, the others are crumbs
 _WIDE = 0.003  # of a drawing's diagonal: a gap that is closed with a note
 _NEAR_SHARE, _NEAR_STEPS, _NEAR_MOST = 0.005, 2.0, 0.05  # how near ends lie that were meant to meet
-_LEAST_INNER = 0.25  # of an outline's area: a shape in it that is told
 _DENSE = 12  # points from which on their spacing says anything
 _WHOLE = 0.8  # of an open line's length: an outline of all lines that is meant instead
 MAX_CLOSE_PAIRS = 2e7  # of pieces of lines that might cross
@@ -53,7 +52,7 @@ def choose(chains: Sequence[Polyline]) -> Choice:
         )
     closed = near_closed(found.chain)
     whole = any(found.chain is chain for chain in chains)
-    inner = inner_shapes(closed.chain, chains, _LEAST_INNER) if whole else ()
+    inner = inner_shapes(closed.chain, chains) if whole else ()
     return Choice(closed.chain, (*notes, *found.notes, *closed.notes, *inner))
 
 

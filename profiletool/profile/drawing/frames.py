@@ -16,6 +16,7 @@ _SHEETS_MM = ((841, 1189), (594, 841), (420, 594), (297, 420), (210, 297), (148,
               (216, 279), (216, 356), (279, 432), (432, 559), (559, 864))  # fmt: skip
 _MARGIN_MM = 45.0  # of a sheet, both sides together
 _ON_SHEET = 0.005  # of a sheet's area
+_TOLD, _TOLD_IN_RECTANGLE = 0.25, 0.01  # of an outline's area: a shape in it that is told
 _MOST = 5  # frames in frames
 
 
@@ -38,10 +39,11 @@ def without_frames(chains: list[Polyline]) -> tuple[list[Polyline], tuple[str, .
     return _without_open_frame(chains, notes)
 
 
-def inner_shapes(outer: Polyline, chains: Sequence[Polyline], least: float) -> Iterator[str]:
-    """Say what large shapes, a share ``least`` of its area, lie in an outline."""
+def inner_shapes(outer: Polyline, chains: Sequence[Polyline]) -> Iterator[str]:
+    """Say what large shapes lie in an outline; in a rectangle, which may be a frame, small ones."""
     if not outer.closed:
         return
+    least = _TOLD_IN_RECTANGLE if is_rectangle(outer) else _TOLD
     inner = [c for c in chains if c.closed and least * area(outer) < area(c) < 0.999 * area(outer)]
     if inner:
         one = max(inner, key=area)

@@ -18,6 +18,7 @@ from profiletool.records.units import MM_PER
 _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
 _WORDS = re.compile(r"[a-zµμ]+|[\"″]")
 _BRACKETS = re.compile(r"[\[(](.*?)[\])]|/\s*([a-zµμ]+)\s*$")
+_NAMES = re.compile(r"[^\s,;\[(]+(?:\s*[\[(][^\])]*[\])])?")  # in a comment
 _PIXELS = ("px", "pixel", "pixels")
 MAX_HEADER = 20  # lines of words before the first point
 
@@ -46,7 +47,7 @@ def read_csv(data: bytes) -> Drawn:
     if data.count(b"\n") + data.count(b"\r") > 2 * MAX_POINTS:
         raise UnreadableInput(f"more than {MAX_POINTS} lines; thin the points out")
     told = list(comments(data))[-MAX_HEADER:]
-    header = [re.split(parting, text) for text in told for parting in (r"\s+", r"[,;\t]|\s{2,}")]
+    header = [_NAMES.findall(text) for text in told]
     words, columns = 0, None
     rows: list[tuple[float, ...]] = []
     for number, fields in read_lines(data):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from xml.etree.ElementTree import Element, SubElement
 
@@ -91,8 +91,7 @@ def plain_tree(root: Element, layer: str | None = None) -> Plain:
     state = _State({}, (size[0], size[1]), within=layer is None or _is_layer(root, layer))
     style = copier.sheet.of(root, ())
     state = replace(state, style=_inherited({}, style), path=(root,))
-    for child in root:
-        copier.copy(child, made, state)
+    copier.copy_all(list(root), made, state)
     return Plain(made, copier.left)
 
 
@@ -108,6 +107,12 @@ class _Copier:
             if element.get("id"):
                 self.by_id[element.get("id", "")].append(element)
         self.elements = self.numbers = self.transforms = self.clips = 0
+
+    def copy_all(self, elements: Sequence[Element], into: Element, above: _State) -> None:
+        """Copy elements and what is in them; symbols are drawn by <use> alone."""
+        for element in elements:
+            if name_of(element) != "symbol":
+                self.copy(element, into, above)
 
     def copy(self, element: Element, into: Element, above: _State) -> None:
         """Copy an element and what is in it."""
@@ -206,9 +211,7 @@ class _Copier:
         children = list(element)
         if name_of(element) == "switch":
             children = [c for c in children if name_of(c) not in ("", "foreignObject")][:1]
-        for child in children:
-            if name_of(child) != "symbol":
-                self.copy(child, into, state)
+        self.copy_all(children, into, state)
 
     def _use(self, element: Element, into: Element, state: _State) -> None:
         link = element.get("href", element.get(_XLINK, ""))
