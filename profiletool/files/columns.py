@@ -14,7 +14,9 @@ _SHOWN = 20  # characters of a bad field in a message
 _SEEN_LINES = 50  # that tell what separates the fields
 _BARE = str.maketrans({"\u2212": "-", "\u2013": "-", "\u00a0": "", "\u202f": "", "'": ""})
 _LIKE_NUMBER = re.compile(r"[+-]?[0-9.,]*[0-9][0-9.,]*(?:[eE][+-]?[0-9]+)?")
-_SPACED_COMMAS = re.compile(r"(?:[+-]?[0-9]+(?:,[0-9]+)?(?:[eE][+-]?[0-9]+)?\s+)+[+-]?[0-9]+,?[0-9]*")
+_SPACED_COMMAS = re.compile(
+    r"(?:[+-]?[0-9]+(?:,[0-9]+)?(?:[eE][+-]?[0-9]+)?\s+)+[+-]?[0-9]+,?[0-9]*"
+)
 
 
 def read_lines(data: bytes) -> Iterator[tuple[int, list[str]]]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import importlib
 
 HEIF_EXTRA = "pip install profiletool[heic]"
-# The first, of the extra, only decodes and is LGPL as a wheel; the second's wheels hold a GPL encoder.
+# The extra is the first: it only decodes, and its wheels are LGPL. Wheels of the second hold an
+# encoder that is GPL.
 _DECODERS = ("pi_heif", "pillow_heif")
 
 

@@ -203,7 +203,7 @@ def _channels(path: Path, image: Image.Image) -> tuple[NDArray[np.uint8], NDArra
 
 
 def _several(image: Image.Image) -> tuple[str, ...]:
-    """Say that a file holds more pictures than the one that is read; a camera's previews do not count."""
+    """Say that a file holds more pictures than the one that is read, a camera's previews apart."""
     count = 1 if image.format == "MPO" else getattr(image, "n_frames", 1)
     return () if count == 1 else (f"the file holds {count} pictures: the first was taken",)
 

@@ -77,6 +77,8 @@ def _check_tiff(file: BinaryIO, head: bytes) -> None:
 def _part(file: BinaryIO, place: int, size: int, end: int, read: bool = True) -> bytes:
     """Read a part that a TIFF points to."""
     if place + size > end:
-        raise UnreadableInput("a TIFF that points outside itself, cut off or damaged; save it again")
+        raise UnreadableInput(
+            "a TIFF that points outside itself, cut off or damaged; save it again"
+        )
     file.seek(place)
     return file.read(size) if read else b""

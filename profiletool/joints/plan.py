@@ -74,8 +74,8 @@ def out_of_reach(length_mm: float, rms_mm: float, request: Request) -> str:
     longest = request.tube.max_length_mm
     if length_mm > _TOO_LONG * longest:
         return (
-            f"the profile is {length_mm:.0f} mm long and the tube at most {longest:g} mm: no finite "
-            "elements were run; shorten the stretch (`start_pct`, `end_pct`), or raise "
+            f"the profile is {length_mm:.0f} mm long and the tube at most {longest:g} mm: no "
+            "finite elements were run; shorten the stretch (`start_pct`, `end_pct`), or raise "
             "`max_length_mm`"
         )
     limit = request.tolerance_mm or GOOD_SHARE * length_mm

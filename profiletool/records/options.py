@@ -110,9 +110,18 @@ class Option:
 
 
 DESIGN = (
-    Option("--height", "scale.height_mm", _MM, "Full height of the object, mm; of a drawing too.", above=0.0),
-    Option("--width", "scale.width_mm", _MM, "Full width of the object, mm; of a drawing too.", above=0.0),
-    Option("--mm-per-px", "scale.mm_per_px", _RATIO, "Millimetres per pixel, or per unit of a drawing.", above=0.0),
+    Option(
+        "--height", "scale.height_mm", _MM, "Full height of the object, drawn or pictured, mm.",
+        above=0.0,
+    ),
+    Option(
+        "--width", "scale.width_mm", _MM, "Full width of the object, drawn or pictured, mm.",
+        above=0.0,
+    ),
+    Option(
+        "--mm-per-px", "scale.mm_per_px", _RATIO,
+        "Millimetres per pixel, or per unit of a drawing.", above=0.0,
+    ),
     Option(
         "--marker-mm", "scale.marker_mm", _MM,
         "Side of an ArUco DICT_4X4_50 marker in the picture, mm.", above=0.0,

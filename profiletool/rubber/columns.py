@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -24,8 +25,10 @@ _FRACTIONS = ("", "-", "1", "mm/mm", "m/m", "in/in", "cm/cm")
 _PERCENT = ("%", "percent", "pct")
 _TRUE = re.compile("true|cauchy")
 _LOGARITHMIC = re.compile(r"\b(?:log|ln|logarithmic|hencky|true)\b|^le$")
-_NAMES = re.compile(r"stretch|lambda|strain|stress|nominal|engineering|eng\b|tensile|uniaxial|true|"
-                    r"cauchy|log(?:arithmic)?|hencky|first|piola|kirchhoff|pk1|ratio|extension")  # fmt: skip
+_NAMES = re.compile(
+    r"stretch|lambda|strain|stress|nominal|engineering|eng\b|tensile|uniaxial|true|cauchy|"
+    r"log(?:arithmic)?|hencky|first|piola|kirchhoff|pk1|ratio|extension"
+)
 _BACK = 0.02  # of the range of the stretch: a turn, not scatter
 _LEAST_RUN = 5  # points of a run, on average
 _NEEDED = (
@@ -113,7 +116,7 @@ def needs_header() -> UnreadableInput:
 
 
 def _unit(head: str) -> str:
-    """Unit that a name holds: in brackets, after a slash, or what is left of its words."""
+    """Give the unit that a name holds: in brackets, after a slash, or what is left of its words."""
     inside = re.search(r"[\[(]([^\[\]()]*)[\])]", head)
     if inside is not None:
         return inside[1].strip()
@@ -139,7 +142,8 @@ def _mpa(unit: str) -> float:
         return MPA_PER[plain]
     if plain in _FORCES:
         raise UnreadableInput(
-            f"the header gives {shown(unit)}, a force; divide it by the cross-section before the test"
+            f"the header gives {shown(unit)}, a force; divide it by the cross-section before the "
+            "test"
         )
     if plain and ("/" in plain or re.search("pa$|psi|bar$", plain)):
         raise UnreadableInput(
@@ -149,7 +153,7 @@ def _mpa(unit: str) -> float:
 
 
 def first_loading(stretch: FloatArray) -> list[int]:
-    """Indices of the first loading of a test that was run to and fro; of all points in any other.
+    """Find the first loading of a test that was run to and fro; all points of any other.
 
     Loading leads away from stretch 1, in tension or in compression; the first of either counts. A
     table in any order, which turns at every other point, is taken whole.
@@ -170,15 +174,14 @@ def first_loading(stretch: FloatArray) -> list[int]:
             turns.append(extreme)
             extreme, rising = n, not rising
     turns = sorted({*turns, len(stretch) - 1})
-    runs = [range(a, b + 1) for a, b in zip(turns, turns[1:], strict=False) if b > a]
+    runs = [range(a, b + 1) for a, b in pairwise(turns) if b > a]
     if len(runs) < 2 or len(runs) > max(2, len(stretch) // _LEAST_RUN):
         return everything
     rests = [int(run[np.argmin(np.abs(stretch[run] - 1.0))]) for run in runs]
     parts = sorted({*turns, *rests})
-    runs = [range(a, b + 1) for a, b in zip(parts, parts[1:], strict=False)]
+    runs = [range(a, b + 1) for a, b in pairwise(parts)]
     away = [run for run in runs if abs(stretch[run[-1]] - 1.0) > abs(stretch[run[0]] - 1.0)]
     kept: list[int] = []
     for tension in (False, True):
         kept += next((list(run) for run in away if (stretch[run[-1]] > 1.0) == tension), [])
     return sorted(kept) or everything
-

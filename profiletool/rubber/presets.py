@@ -237,7 +237,9 @@ def _by_test(path: Path) -> Rubber:
     except UnreadableInput as error:
         raise UnreadableInput(f"{shown}: {error}") from error
     low, high = fit.stretch_range
-    alone = "" if len(kept) == len(stretch) else f", the first loading alone of {len(stretch)} points"
+    alone = (
+        "" if len(kept) == len(stretch) else f", the first loading alone of {len(stretch)} points"
+    )
     return Rubber(
         name=path.name,
         law=fit.law,

@@ -113,12 +113,12 @@ def _contradictions(
 ) -> Iterator[str]:
     """Say where what is given does not fit what is drawn."""
     width, height = size
-    if scale.source == "height" and asked.width_mm is not None:
-        if abs(asked.width_mm / width - 1.0) > _APART:
-            yield (
-                f"`width_mm` is {asked.width_mm:g} mm, but at a `height_mm` of {height:g} mm the "
-                f"object is {width:.1f} mm wide: the height was taken"
-            )
+    both = scale.source == "height" and asked.width_mm is not None
+    if both and abs((asked.width_mm or 0.0) / width - 1.0) > _APART:
+        yield (
+            f"`width_mm` is {asked.width_mm:g} mm, but at a `height_mm` of {height:g} mm the "
+            f"object is {width:.1f} mm wide: the height was taken"
+        )
     doubted = unit.assumed or not unit.sized
     if scale.source != "vector" and not doubted and abs(scale.mm_per_px - 1.0) > _APART:
         own, given = size / scale.mm_per_px, scale.source

@@ -111,12 +111,10 @@ def measure_on_sheet(
         share = math.hypot(made.measured_share, max(made.shape_share, scale.flat_share))
         scale = replace(scale, error_share=share)
     if asked.marker_mm is not None:
-        flat = marker_scale(sheet.picture, asked.marker_mm)
-        share = math.hypot(flat.error_share or 0.0, scale.error_share or 0.0)
-        size = flat.mm_per_px / (sheet.picture.mm_per_px or 1.0)
-        scale = replace(
-            scale, mm_per_px=size * scale.mm_per_px, source="marker", error_share=share
-        )
+        printed = marker_scale(sheet.picture, asked.marker_mm)
+        share = math.hypot(printed.error_share or 0.0, scale.error_share or 0.0)
+        size = printed.mm_per_px / (sheet.picture.mm_per_px or 1.0)
+        scale = replace(scale, mm_per_px=size * scale.mm_per_px, source="marker", error_share=share)
     return replace(silhouette, contour_px=contour), scale
 
 

@@ -70,7 +70,7 @@ def disc_beside(shade: int, x: int) -> Callable[[Pixels], Pixels]:
 @pytest.mark.parametrize("x", [AT - 66, AT - 71])
 def test_what_touches_or_covers_the_edge(turn: int, x: int) -> None:
     touched = np.ascontiguousarray(np.rot90(disc_beside(40, x)(scene()), turn))
-    with pytest.raises(NoScale, match="touches or covers the marker's edge|was read"):
+    with pytest.raises(NoScale, match=r"touches or covers the marker's edge|was read"):
         marker_scale(picture(touched), 30.0)
 
 

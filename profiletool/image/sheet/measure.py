@@ -12,6 +12,7 @@ from profiletool.image.find.masks import thickness
 from profiletool.image.sheet.parallax import (
     DISTANCE_SHARE,
     LARGEST_SHARE,
+    Camera,
     Remaining,
     axis_height,
     remaining,
@@ -84,43 +85,44 @@ def measure(
     """
     k = made.picture.mm_per_px
     assert k is not None  # `rectify` always knows it
-    camera = made.camera
-    if camera_distance_mm is not None:
-        _check_distance(camera_distance_mm, camera.height_mm)
-        camera = replace(camera, height_mm=camera_distance_mm, height_share=DISTANCE_SHARE)
+    camera = _camera(made.camera, camera_distance_mm)
     foot, high = np.array(camera.foot_px), camera.height_mm
     contour = silhouette.contour_px
     size = np.ptp(contour, axis=0)
     around = revolved and not flat
     section = lying_section(contour * k, np.append(foot * k, high)) if around else None
-    if section is not None:
-        t = section.height_mm
-    else:
-        t = 0.0 if flat else axis_height(0.5 * thickness(contour) * k, high)
+    t = 0.0 if flat else axis_height(0.5 * thickness(contour) * k, high)
+    t = t if section is None else section.height_mm
     if t > LARGEST_SHARE * high:
         raise NoScale(
             f"a camera {high:.0f} mm above the sheet is too near for an object so thick; "
             "photograph it from farther off"
         )
+    near = shrinkage(t, high)
     if section is not None:
-        contour = foot + (section.points / k - foot) / shrinkage(t, high)
+        contour = foot + (section.points / k - foot) / near
     aside = float(np.hypot(*(contour.mean(axis=0) - foot))) * k
-    left = remaining(t, camera, aside, section is not None)
-    if flat:
-        left = Remaining(0.0, 0.0)
+    left = Remaining(0.0, 0.0) if flat else remaining(t, camera, aside, section is not None)
     edges = math.hypot(silhouette.noise_px, _EDGE_PX)
     noise = 2.0 * math.sqrt(2.0) * edges / float(size.min())
     measured = math.hypot(2.0 * made.error_share, left.distance, noise)
     share = math.hypot(measured, left.shape)
     return Measured(
         silhouette=replace(silhouette, contour_px=contour),
-        scale=Scale(k * shrinkage(t, high), "sheet", share, None if flat else 2.0 * t,
-                    1.0 / shrinkage(t, high) - 1.0),
+        scale=Scale(k * near, "sheet", share, None if flat else 2.0 * t, 1.0 / near - 1.0),
         height_mm=t,
         round=section is not None,
         measured_share=measured,
         shape_share=left.shape,
     )
+
+
+def _camera(seen: Camera, given_mm: float | None) -> Camera:
+    """Give the camera at the distance that was measured, else where the sheet shows it."""
+    if given_mm is None:
+        return seen
+    _check_distance(given_mm, seen.height_mm)
+    return replace(seen, height_mm=given_mm, height_share=DISTANCE_SHARE)
 
 
 def _check_distance(given_mm: float, seen_mm: float) -> None:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from profiletool.errors import NoObject, UnreadableInput
+from profiletool.errors import NoObject
 from profiletool.profile.drawing.chain import JOIN_MM, Polyline, clean, join
 from profiletool.profile.drawing.frames import box_text, inner_shapes, without_frames
-from profiletool.records.units import FloatArray
 
 _ALIKE = 5.0  # a chain this many times as long as all others is the profile, the others are crumbs
 _WIDE = 0.003  # of a drawing's diagonal: a gap that is closed with a note

@@ -10,7 +10,12 @@ from profiletool.records.units import MM_PER_INCH
 if TYPE_CHECKING:
     from ezdxf.document import Drawing
 
-_RARE_MM = {"microinches": 25.4e-6, "mils": 0.0254, "yards": 914.4, "miles": 1609.344e3}  # not ezdxf's
+_RARE_MM = {
+    "microinches": 25.4e-6,
+    "mils": 0.0254,
+    "yards": 914.4,
+    "miles": 1609.344e3,
+}  # not ezdxf's
 
 
 def unit_of(drawing: Drawing, data: bytes) -> DrawnUnit:
@@ -38,4 +43,6 @@ def unit_of(drawing: Drawing, data: bytes) -> DrawnUnit:
             MM_PER_INCH, "the drawing names no unit, and its $MEASUREMENT says inches",
             assumed=True,
         )  # fmt: skip
-    return DrawnUnit(1.0, "the drawing names no unit, so its numbers were taken for mm", assumed=True)
+    return DrawnUnit(
+        1.0, "the drawing names no unit, so its numbers were taken for mm", assumed=True
+    )

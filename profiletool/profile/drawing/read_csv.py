@@ -115,14 +115,14 @@ def _columns(header: Sequence[list[str]], count: int) -> _Columns:
 
 
 def _axis(name: str) -> str:
-    found = {word for word in _WORDS.findall(name)} & {"x", "y", "z"}
+    found = set(_WORDS.findall(name)) & {"x", "y", "z"}
     return found.pop() if len(found) == 1 else ""
 
 
 def _unit(name: str) -> str:
-    """Unit that a name ends in or holds in brackets; "" where it holds none."""
-    words = _WORDS.findall(name)
-    known = [word for word in words if word in MM_PER or word in _PIXELS]
+    """Give the unit that a name ends in or holds in brackets; "" where it holds none."""
+    words: list[str] = _WORDS.findall(name)
+    known: list[str] = [word for word in words if word in MM_PER or word in _PIXELS]
     if known:
         return known[-1]
     inside = _BRACKETS.search(name)

@@ -61,15 +61,7 @@ def read_svg(data: bytes, layer: str | None = None) -> Drawn:
     from svgelements import SVG
 
     text = safe_text(data)
-    if text.count("<") > 2 * svg_tree.MAX_ELEMENTS:
-        raise UnreadableInput(f"more than {svg_tree.MAX_ELEMENTS} elements; simplify the drawing")
-    root = parsed(text)
-    if (root.tag.rpartition("}")[2]) != "svg":
-        raise UnreadableInput(
-            f"holds <{root.tag.rpartition('}')[2][:20]}> instead of <svg>; export it again as SVG"
-        )
-    if not name_of(root):
-        raise UnreadableInput("holds no <svg> element; export it again as plain SVG")
+    root = _root(text)
     unit, factor = size_page(root, text)
     try:
         plain = svg_tree.plain_tree(root, layer)
@@ -91,8 +83,24 @@ def read_svg(data: bytes, layer: str | None = None) -> Drawn:
     whole = [replace(piece, points=p) for piece, p in zip(pieces, near, strict=True)]
     drawn, notes = seen(whole, None if moved else page, {} if moved else regions)
     chains = [clean(piece.points, piece.shut) for piece in drawn]
-    masked = [f"left out of the drawing: {plain.left[w]} {w}" for w in ("mask", "clip path") if plain.left[w]]
+    masked = [
+        f"left out of the drawing: {plain.left[w]} {w}"
+        for w in ("mask", "clip path")
+        if plain.left[w]
+    ]
     return Drawn(join(chains), unit, (*notes, *moved, *masked))
+
+
+def _root(text: str) -> ElementTree.Element:
+    if text.count("<") > 2 * svg_tree.MAX_ELEMENTS:
+        raise UnreadableInput(f"more than {svg_tree.MAX_ELEMENTS} elements; simplify the drawing")
+    root = parsed(text)
+    name = root.tag.rpartition("}")[2]
+    if name != "svg":
+        raise UnreadableInput(f"holds <{name[:20]}> instead of <svg>; export it again as SVG")
+    if not name_of(root):
+        raise UnreadableInput("holds no <svg> element; export it again as plain SVG")
+    return root
 
 
 def _only(left: Counter[str]) -> str:
@@ -109,7 +117,7 @@ def _page(width: Any, height: Any, mm_per_px: float) -> FloatArray | None:
 
 
 def _pieces(drawing: Any, mm_per_px: float) -> tuple[list[Piece], dict[str, list[Piece]]]:
-    """Runs of all shapes, and by its number the regions of every clip."""
+    """Give the runs of all shapes, and by its number the regions of every clip."""
     from svgelements import Shape
 
     pieces: list[Piece] = []

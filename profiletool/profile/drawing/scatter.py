@@ -33,7 +33,7 @@ def without_scatter(chain: Polyline) -> tuple[Polyline, tuple[str, ...]]:
 
 
 def scatter_of(chain: Polyline) -> float:
-    """Standard deviation of the points' position across the line, mm; 0 where it is clean."""
+    """Give the points' standard deviation across the line, mm; 0 where it is clean."""
     points = chain.points
     if len(points) < _LEAST_POINTS:
         return 0.0

@@ -63,7 +63,9 @@ def size_page(root: Element, text: str) -> tuple[DrawnUnit, float]:
     other = _other_px(text, box is not None and bool(physical))
     if other is not None:
         per_inch, name = other
-        unit = DrawnUnit(MM_PER_INCH / per_inch, f"{name} has {per_inch:g} px per inch", assumed=True)
+        unit = DrawnUnit(
+            MM_PER_INCH / per_inch, f"{name} has {per_inch:g} px per inch", assumed=True
+        )
         return unit, CSS_PX_PER_INCH / per_inch
     if physical:
         key, m = next((key, m) for key, m in kept.items() if m in physical)
@@ -101,6 +103,9 @@ def viewport(element: Element, size: Sequence[float]) -> tuple[str, tuple[float,
     if aligned is not None:
         sx = sy = max(sx, sy) if aligned[3] == "slice" else min(sx, sy)
         part = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
-        shift = [part[aligned[1]] * (size[0] - sx * width), part[aligned[2]] * (size[1] - sy * height)]
+        shift = [
+            part[aligned[1]] * (size[0] - sx * width),
+            part[aligned[2]] * (size[1] - sy * height),
+        ]
     place = f"translate({shift[0]!r} {shift[1]!r}) scale({sx!r} {sy!r}) translate({-x!r} {-y!r})"
     return place, (width, height)

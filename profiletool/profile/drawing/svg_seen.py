@@ -92,7 +92,7 @@ def _on_white(pieces: list[Piece]) -> list[Piece]:
 
 
 def _is_page(piece: Piece, page: FloatArray | None) -> bool:
-    if page is None or not piece.shut or piece.fill == "none" and piece.stroke == "none":
+    if page is None or not piece.shut or (piece.fill == "none" and piece.stroke == "none"):
         return False
     low, high = _box(piece) - page
     covers = bool((low <= _ON_PAGE_MM).all() and (high >= -_ON_PAGE_MM).all())

@@ -105,7 +105,7 @@ def _opaque(text: str) -> bool:
 
 
 def _key(compound: str) -> str:
-    """What to look a rule up by."""
+    """Give what a rule is looked up by."""
     marked: list[str] = re.findall(r"[.#][\w-]+", compound)
     return marked[-1] if marked else compound
 

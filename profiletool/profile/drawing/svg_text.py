@@ -20,6 +20,9 @@ _DOCTYPE = re.compile(
 # As Illustrator declares namespaces, and nothing else.
 _NAMESPACE = re.compile(r"\s*<!ENTITY\s+([\w.-]+)\s+\"(https?://[\w./:-]{1,100})\"\s*>\s*")
 _MAX_ENTITIES = 30
+_DECLARED = (
+    "holds a DOCTYPE or ENTITY declaration that declares more than names; save it as plain SVG"
+)
 _DECLARATION = re.compile(r"<!(?:DOCTYPE|ENTITY)", re.IGNORECASE)
 
 
@@ -44,9 +47,7 @@ def safe_text(data: bytes) -> str:
             if text.count(f"&{name};") <= _MAX_ENTITIES:
                 text = text.replace(f"&{name};", value)
     if _DECLARATION.search(text):
-        raise UnreadableInput(
-            "holds a DOCTYPE or ENTITY declaration that declares more than names; save it as plain SVG"
-        )
+        raise UnreadableInput(_DECLARED)
     return text
 
 
@@ -98,7 +99,5 @@ def _namespaces(subset: str) -> dict[str, str]:
     """Read declarations of namespaces; nothing where there is any other declaration."""
     names = dict(_NAMESPACE.findall(subset))
     if _NAMESPACE.sub("", subset).strip() or len(names) > _MAX_ENTITIES:
-        raise UnreadableInput(
-            "holds a DOCTYPE or ENTITY declaration that declares more than names; save it as plain SVG"
-        )
+        raise UnreadableInput(_DECLARED)
     return names

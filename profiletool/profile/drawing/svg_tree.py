@@ -79,7 +79,7 @@ def plain_tree(root: Element, layer: str | None = None) -> Plain:
     """
     copier = _Copier(root)
     if layer is not None and not any(_is_layer(e, layer) for e in root.iter()):
-        names = dict.fromkeys(e.get(_LABEL) or e.get("id", "") for e in root if name_of(e) == "g")
+        names = [e.get(_LABEL, e.get("id", "")) for e in root if name_of(e) == "g"]
         known = ", ".join(f"{name[:40]!a}" for name in [n for n in names if n][:_NAMED])
         raise UsageError(f"no `layer` {layer[:40]!a}; there are {known or 'none'}")
     copier.layer = layer
@@ -190,7 +190,9 @@ class _Copier:
             stroke = "none"
         kept = {key: element.get(key, "") for key in (*_LENGTHS, *_LONG) if element.get(key)}
         kept |= {"inside": fill, "line": stroke, "clips": " ".join(state.clips)}
-        SubElement(into, name_of(element), kept | {"filled": "stated" if "fill" in style else "habit"})
+        SubElement(
+            into, name_of(element), kept | {"filled": "stated" if "fill" in style else "habit"}
+        )
 
     def _group(self, element: Element, into: Element, state: _State) -> None:
         if name_of(element) in ("svg", "symbol"):
@@ -222,7 +224,9 @@ class _Copier:
         for target in targets:
             if name_of(target) in ("symbol", "svg"):
                 sizes = {key: element.get(key, "") for key in ("width", "height")}
-                own = Element(target.tag, {**target.attrib, **{k: v for k, v in sizes.items() if v}})
+                own = Element(
+                    target.tag, {**target.attrib, **{k: v for k, v in sizes.items() if v}}
+                )
                 own.extend(list(target))
                 target = own
             self.copy(target, into, state)
@@ -267,11 +271,12 @@ def _check_values(element: Element) -> None:
     """Refuse what is no number where a shape has them."""
     for key, allowed in _ALLOWED.items():
         if not allowed.fullmatch(element.get(key, "")):
-            raise UnreadableInput(f"<{name_of(element)}> has a bad {key!r}; export the drawing again")
+            raise UnreadableInput(
+                f"<{name_of(element)}> has a bad {key!r}; export the drawing again"
+            )
     for key in _LENGTHS:
         text = element.get(key, "0")
         if not LENGTH.fullmatch(text) and text != "auto":
             raise UnreadableInput(
                 f"<{name_of(element)}> has the length {text[:20]!a}; use numbers, mm or px"
             )
-

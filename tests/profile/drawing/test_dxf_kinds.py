@@ -221,8 +221,8 @@ def test_a_layer_alone_even_if_it_is_off(drawn: Callable[..., Path]) -> None:
 @pytest.mark.parametrize(
     ("draw", "says"),
     [
-        (lambda space, _: (egg(space), egg(space, 1.9, [(-30, -46), (30, -46), (30, 46), (-30, 46)])),
-         None),
+        (lambda space, _: (egg(space), egg(space, 1.9, [(-30, -46), (30, -46), (30, 46),
+                                                        (-30, 46)])), None),
         (lambda space, _: (egg(space, 0.5), egg(space, 1.25, [(-35, -60), (35, -60), (35, 60),
                                                               (-35, 60)])), "a frame or the obj"),
         (lambda space, _: space.add_image(space.doc.add_image_def("a.png", (9, 9)), (0, 0), (9, 9)),

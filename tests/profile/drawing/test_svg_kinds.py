@@ -37,7 +37,8 @@ def svg(tmp_path: Path) -> Callable[..., Path]:
     ("body", "page"),
     [
         (EGG, 'width="200mm" height="110mm" viewBox="0 0 100 110"'),
-        (EGG, 'width="100mm" height="55mm" viewBox="0 0 100 110" preserveAspectRatio="xMidYMid slice"'),
+        (EGG, 'width="100mm" height="55mm" viewBox="0 0 100 110" '
+              'preserveAspectRatio="xMidYMid slice"'),
         (EGG, 'width="100mm" height="100%" viewBox="0 0 100 110"'),
         (EGG, 'width="10CM" viewBox="0 0 100 110"'),
         (EGG, f'{PAGE} inkscape:version="0.91 r13725"'),
@@ -88,7 +89,7 @@ def test_the_same_egg(
     [
         (f'<g transform="scale(3.7795276)">{EGG}</g>', 'width="378px" height="416"', "",
          "size in px alone, taken for 1/96 inch; `height_mm` or `width_mm` settle it"),
-        (f'<path d="{path_data(99, 99, 90 / 25.4)}"/>', 'inkscape:version="0.48.4" width="99mm"', "",
+        (f'<path d="{path_data(99, 99, 90 / 25.4)}"/>', 'inkscape:version="0.48.4" width="9mm"', "",
          "Inkscape 0.48 has 90 px per inch"),
         (f'<path d="{path_data(99, 99, 72 / 25.4)}"/>', 'viewBox="0 0 300 300"',
          "<!-- Generator: Adobe Illustrator 25 -->", "Illustrator has 72 px per inch"),
