@@ -149,3 +149,12 @@ def test_a_tiff_that_points_outside_itself(
     path.write_bytes(pointed(tiff(compression), tag, value))
     with pytest.raises(UnreadableInput, match="points outside itself"):
         load_picture(path)
+
+
+def test_heic_with_the_extra() -> None:
+    if not heif.with_heif():
+        pytest.skip("needs the extra [heic]")
+    picture = load_picture(Path(__file__).with_name("egg.heic"))
+    assert picture.format == "HEIF"
+    assert picture.rgb.shape in ((128, 96, 3), (96, 128, 3))
+    assert abs(picture.rgb[64, 48].astype(int) - (120, 60, 40)).max() < 12

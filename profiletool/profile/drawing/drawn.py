@@ -11,7 +11,7 @@ from profiletool.profile.drawing.chain import MAX_COORDINATE_MM, Polyline
 from profiletool.records.profile import DrawnUnit
 from profiletool.records.units import FloatArray
 
-_FAR_TIMES = 1e4  # a place so many times as far off as MAX_COORDINATE_MM loses digits
+FAR_TIMES = 1e4  # a place so many times as far off as MAX_COORDINATE_MM loses digits
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ def placed(pieces: Sequence[FloatArray]) -> tuple[list[FloatArray], tuple[str, .
         return pieces, ()
     points = np.concatenate(pieces)
     far = np.abs(points).max()
-    if far <= MAX_COORDINATE_MM or not far <= _FAR_TIMES * MAX_COORDINATE_MM:
+    if far <= MAX_COORDINATE_MM or not far <= FAR_TIMES * MAX_COORDINATE_MM:
         return pieces, ()
     low, high = points.min(axis=0), points.max(axis=0)
     if (high - low).max() > MAX_COORDINATE_MM:

@@ -20,7 +20,7 @@ from profiletool.profile.drawing.chain import (
     clean,
     join,
 )
-from profiletool.profile.drawing.drawn import Drawn, placed
+from profiletool.profile.drawing.drawn import FAR_TIMES, Drawn, placed
 from profiletool.profile.drawing.dxf_entities import drawn_entities
 from profiletool.profile.drawing.dxf_spline import spline_points
 from profiletool.profile.drawing.dxf_unit import unit_of
@@ -34,7 +34,6 @@ MAX_LINES = 300_000  # of text
 MAX_BINARY_BYTES = 2_000_000
 _HEADER = b"0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1015\n0\nENDSEC\n"
 _FRAME_FLAG = 16  # of a polyline's vertex: a control point
-_FAR_TIMES = 1e4  # a place so many times as far off as MAX_COORDINATE_MM loses digits
 _FLAT_SHARE = 1e-6  # of a drawing's size
 _ARC_PIECES = 16  # Bézier curves per full ellipse: off by less than 1e-7 of the radius
 
@@ -201,7 +200,7 @@ def _check(vertices: Iterable[Any], factor: float) -> None:
     places = np.array([(v.x, v.y, v.z) for v in vertices], dtype=np.float64).reshape(-1, 3)
     if len(places) == 0:
         return
-    reach = max(np.ptp(places, axis=0).max(), np.abs(places).max() / _FAR_TIMES) * factor
+    reach = max(np.ptp(places, axis=0).max(), np.abs(places).max() / FAR_TIMES) * factor
     if not reach <= 4.0 * MAX_COORDINATE_MM:
         raise UnreadableInput(
             f"coordinates beyond {MAX_COORDINATE_MM:g} mm or not finite; check the drawing's units"

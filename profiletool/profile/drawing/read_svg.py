@@ -20,7 +20,7 @@ from profiletool.profile.drawing.chain import (
     clean,
     join,
 )
-from profiletool.profile.drawing.drawn import Drawn, placed
+from profiletool.profile.drawing.drawn import FAR_TIMES, Drawn, placed
 from profiletool.profile.drawing.svg_page import CSS_PX_PER_INCH, MM_PER_PX, size_page
 from profiletool.profile.drawing.svg_seen import Piece, seen
 from profiletool.profile.drawing.svg_style import name_of
@@ -136,8 +136,13 @@ def _pieces(drawing: Any, mm_per_px: float) -> tuple[list[Piece], dict[str, list
                 raise UnreadableInput(f"more than {MAX_POINTS} points; simplify the drawing")
             if len(points) < 2:
                 continue
+            placed_mm = points @ matrix.T + offset
+            if not (np.abs(placed_mm) <= FAR_TIMES * MAX_COORDINATE_MM).all():
+                raise UnreadableInput(
+                    f"coordinates beyond {MAX_COORDINATE_MM:g} mm or not finite; check its size"
+                )
             piece = Piece(
-                points @ matrix.T + offset, closed, str(values.get("inside")),
+                placed_mm, closed, str(values.get("inside")),
                 str(values.get("line")), values.get("filled") == "stated",
                 tuple(str(values.get("clips", "")).split()),
             )  # fmt: skip

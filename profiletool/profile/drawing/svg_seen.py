@@ -125,7 +125,7 @@ def _clipped(piece: Piece, regions: Mapping[str, Sequence[Piece]]) -> Iterator[P
 def _within(piece: Piece, window: FloatArray) -> list[Piece]:
     import shapely
 
-    if len(piece.points) < 2 or not np.isfinite(piece.points).all():
+    if len(piece.points) < 2:
         return [piece]
     filled = piece.fill != "none" or piece.closed
     body = shapely.LineString(piece.points)
