@@ -108,17 +108,22 @@ def _check_size(size: FloatArray, unit: DrawnUnit) -> None:
         )
 
 
+def sides_apart(width_mm: float, asked: ScaleRequest) -> Iterator[str]:
+    """Say where a width that is given does not fit the one that the height gives."""
+    height, width = asked.height_mm, asked.width_mm
+    if height is not None and width is not None and abs(width / width_mm - 1.0) > _APART:
+        yield (
+            f"`width_mm` is {width:g} mm, but at a `height_mm` of {height:g} mm the object is "
+            f"{width_mm:.1f} mm wide: the height was taken"
+        )
+
+
 def _contradictions(
     size: FloatArray, scale: Scale, unit: DrawnUnit, asked: ScaleRequest
 ) -> Iterator[str]:
     """Say where what is given does not fit what is drawn."""
     width, height = size
-    both = scale.source == "height" and asked.width_mm is not None
-    if both and abs((asked.width_mm or 0.0) / width - 1.0) > _APART:
-        yield (
-            f"`width_mm` is {asked.width_mm:g} mm, but at a `height_mm` of {height:g} mm the "
-            f"object is {width:.1f} mm wide: the height was taken"
-        )
+    yield from sides_apart(float(width), asked)
     doubted = unit.assumed or not unit.sized
     if scale.source != "vector" and not doubted and abs(scale.mm_per_px - 1.0) > _APART:
         own, given = size / scale.mm_per_px, scale.source

@@ -17,7 +17,7 @@ from profiletool.records.picture import Picture, Scale, Silhouette
 from profiletool.records.profile import DrawnLine, Profile
 from profiletool.records.request import Look, Request
 from profiletool.records.side import Side
-from profiletool.subject.drawing import see_drawing
+from profiletool.subject.drawing import see_drawing, sides_apart
 from profiletool.subject.photo import see
 
 _WRONG_SCALE = {
@@ -97,7 +97,7 @@ def find_subject(request: Request, say: Callable[[str], None]) -> Subject:
     )
     reach = replace(reach, noise_mm=silhouette.noise_px * k, spacing_mm=k)
     profile = profile_of_object(outline, reach)
-    notes = (*picture.notes, *seen.notes)
+    notes = (*picture.notes, *seen.notes, *sides_apart(float(width), request.scale))
     place = float(origin[0]), float(origin[1])
     return Subject(seen.picture, silhouette, scale, place, profile, seen.rotated_deg, notes)
 
@@ -135,6 +135,8 @@ def drawing_notes(request: Request, subject: Subject) -> Iterator[str]:
         if look != Look(rotate=look.rotate, symmetric=look.symmetric, layer=look.layer):
             yield "a drawing needs no `box`, `point`, `mask` or `flat`: they were not used"
         return
+    if request.look.layer is not None:
+        yield "a picture has no `layer`: it was not used"
     if subject.silhouette.touches:
         edges = ", ".join(sorted(subject.silhouette.touches))
         yield f"the object runs out of the frame ({edges}); the profile ends there"

@@ -52,6 +52,11 @@ def drawn_entities(drawing: Drawing, layer: str | None) -> tuple[list[Any], tupl
     if not found and layer is not None:
         raise NoObject(f"nothing drawable on the `layer` {layer[:40]!a}")
     left = ", ".join(f"{count} {kind}" for kind, count in sorted(walk.left.items()))
+    hidden = ", ".join(f"{name[:40]!a}" for name in sorted(walk.hidden)[:_NAMED])
+    if hidden and not found:
+        raise NoObject(f"all lies on layers that are off or frozen, {hidden}: choose a `layer`")
+    if hidden:
+        notes.append(f"left out: what lies on layers that are off or frozen, {hidden}")
     if left and not found:
         raise NoObject(f"nothing drawable, only {left}; explode it, or export its outline as lines")
     if left:
@@ -70,6 +75,7 @@ class _Walk:
         self.off = {entry.dxf.name.lower() for entry in layers if entry.is_off()}
         self.frozen = {entry.dxf.name.lower() for entry in layers if entry.is_frozen()}
         self.left: Counter[str] = Counter()
+        self.hidden: set[str] = set()
         self.met = 0
 
     def drawn(self, entities: Any, within: str = "", depth: int = 0) -> Iterator[Any]:
@@ -83,7 +89,11 @@ class _Walk:
                 raise UnreadableInput(f"more than {MAX_ENTITIES} lines and curves; simplify it")
             kind, layer = entity.dxftype(), _layer(entity)
             layer = within if within and layer == "0" else layer
-            if entity.dxf.get("invisible", 0) or self._hidden(layer, kind):
+            if entity.dxf.get("invisible", 0):
+                continue
+            if self._hidden(layer, kind):
+                if kind in (*KINDS, *_OPENED) and layer != _NEVER_PLOTTED:
+                    self.hidden.add(layer)
                 continue
             if kind in _OPENED:
                 yield from self._opened(entity, layer, depth)

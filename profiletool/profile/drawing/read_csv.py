@@ -19,6 +19,7 @@ _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
 _WORDS = re.compile(r"[a-zµμ]+|[\"″]")
 _BRACKETS = re.compile(r"[\[(](.*?)[\])]|/\s*([a-zµμ]+)\s*$")
 _NAMES = re.compile(r"[^\s,;\[(]+(?:\s*[\[(][^\])]*[\])])?")  # in a comment
+_UNITS = re.compile(r"\bunits?\b\W*(?:in|are|is|of)?\W*([a-zµμ]+)")  # anywhere before the points
 _PIXELS = ("px", "pixel", "pixels")
 MAX_HEADER = 20  # lines of words before the first point
 
@@ -107,11 +108,11 @@ def _columns(header: Sequence[list[str]], count: int) -> _Columns:
             rows.append(names)
         elif len(names) == count and not named:
             rows = [names]
-    if not named:
-        return _Columns((0, 1), 2, _common([row[:2] for row in rows]))
-    places = tuple(named[axis] for axis in ("x", "y", "z") if axis in named)
-    units = [[row[named["x"]], row[named["y"]]] for row in rows if len(row) > max(places)]
-    return _Columns(places, 0, _common(units))
+    told = [found[1] for line in header if (found := _UNITS.search(" ".join(line).lower()))][:1]
+    places = tuple(named[axis] for axis in ("x", "y", "z") if axis in named) or (0, 1)
+    units = [[row[n] for n in places[:2]] for row in rows if len(row) > max(places)]
+    in_names = any(_unit(name) for row in units for name in row)
+    return _Columns(places, 0 if named else 2, _common(units if in_names else [told]))
 
 
 def _axis(name: str) -> str:

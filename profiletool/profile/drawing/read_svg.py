@@ -27,6 +27,7 @@ from profiletool.profile.drawing.svg_style import name_of
 from profiletool.profile.drawing.svg_text import parsed, safe_text
 from profiletool.records.units import FloatArray
 
+_LOST = ("mask", "clip path", "hidden layer")  # what is told of what is not drawn
 # What svgelements throws on values that it does not understand.
 _DAMAGE = (ValueError, TypeError, IndexError, KeyError, AttributeError, ArithmeticError)
 
@@ -76,19 +77,17 @@ def read_svg(data: bytes, layer: str | None = None) -> Drawn:
     except _DAMAGE as error:
         reason = f" ({error})" if str(error) else ""
         raise UnreadableInput(f"values that SVG does not know{reason}; export again") from None
-    if not pieces and plain.left:
+    if not pieces and any(plain.left.values()):
         raise NoObject(_only(plain.left))
     page = _page(drawing.width, drawing.height, MM_PER_PX * factor)
     near, moved = placed([piece.points for piece in pieces])
     whole = [replace(piece, points=p) for piece, p in zip(pieces, near, strict=True)]
     drawn, notes = seen(whole, None if moved else page, {} if moved else regions)
     chains = [clean(piece.points, piece.shut) for piece in drawn]
-    masked = [
-        f"left out of the drawing: {plain.left[w]} {w}"
-        for w in ("mask", "clip path")
-        if plain.left[w]
+    lost = [
+        f"left out of the drawing: {plain.left[what]} {what}" for what in _LOST if plain.left[what]
     ]
-    return Drawn(join(chains), unit, (*notes, *moved, *masked))
+    return Drawn(join(chains), unit, (*notes, *moved, *lost))
 
 
 def _root(text: str) -> ElementTree.Element:
@@ -107,7 +106,9 @@ def _only(left: Counter[str]) -> str:
     """Say what a drawing holds that has no lines."""
     if left["image"]:
         return "nothing drawable, only a picture: trace it, or give the picture itself"
-    return "nothing drawable, only text: turn it into paths"
+    if left["text"]:
+        return "nothing drawable, only text: turn it into paths"
+    return "nothing drawable that is not hidden: show it, or choose a `layer`"
 
 
 def _page(width: Any, height: Any, mm_per_px: float) -> FloatArray | None:

@@ -47,7 +47,10 @@ def size_page(root: Element, text: str) -> tuple[DrawnUnit, float]:
     float
         What lengths in CSS px are to be multiplied with, where a program has other px.
     """
-    given = {key: LENGTH.fullmatch(root.get(key, "")) for key in ("width", "height")}
+    styled = dict(re.findall(r"(?:^|;)\s*(width|height)\s*:\s*([^;]+)", root.get("style", "")))
+    given = {
+        key: LENGTH.fullmatch(root.get(key) or styled.get(key) or "") for key in ("width", "height")
+    }
     kept = {key: m for key, m in given.items() if m is not None and m[2] != "%"}
     for key in given:
         root.attrib.pop(key, None)

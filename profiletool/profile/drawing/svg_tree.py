@@ -60,7 +60,7 @@ class Plain:
         filled is stated or habit; clips are numbers with spaces between. What has a clipping is
         no shape, but the region of the clip of that number.
     left : Counter of str
-        Texts, pictures and masks that are not drawn.
+        Texts, pictures, masks and hidden layers that are not drawn.
     """
 
     root: Element
@@ -126,6 +126,7 @@ class _Copier:
         chosen = self.layer is not None and _is_layer(element, self.layer)
         hidden = style.get("display") == "none" or share(style.get("opacity", "1")) == 0.0
         if hidden and not chosen:
+            self.left["hidden layer"] += element.get(_LABEL) is not None
             return
         if style.get("mask", "none") != "none":
             self.left["mask"] += 1

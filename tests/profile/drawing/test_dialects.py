@@ -32,6 +32,8 @@ def commas(separator: str, scale: float = 1.0) -> str:
         "X [µm],Y [µm]\n" + rows(scale=1e3),
         "x_pt,y_pt\n" + rows(scale=72 / 25.4),
         "x,y\ncm,cm\n" + rows(scale=0.1, form="%.6f"),
+        "# units: cm\nx,y\n" + rows(scale=0.1, form="%.6f"),
+        "Units are inches\n\n" + rows(scale=1 / 25.4, form="%.7f"),
         "x,y,\n" + rows().replace("\n", ",\n") + ",",
         '\ufeff"X";"Y"\n' + commas(";"),
         "x,y,z\n" + rows().replace("\n", ",0\n") + ",0",

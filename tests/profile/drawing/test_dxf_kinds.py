@@ -90,8 +90,7 @@ def short_lines(space: Any, _: object) -> None:
 @pytest.mark.parametrize(
     "draw",
     [
-        blocks_in_blocks, mirrored_block, block_on_layer, frozen_block, hatch, hatched, dimensions,
-        short_lines,
+        blocks_in_blocks, mirrored_block, hatch, hatched, dimensions, short_lines,
         lambda space, _: egg(space, points=[(-x, y) for x, y in RING], extrusion=(0, 0, -1)),
     ],
 )  # fmt: skip
@@ -169,6 +168,8 @@ def outside_reference(space: Any, document: Any) -> None:
 @pytest.mark.parametrize(
     ("draw", "said"),
     [
+        (block_on_layer, "on layers that are off or frozen, 'off'"),
+        (frozen_block, "on layers that are off or frozen, 'frozen'"),
         (title_block, "a rectangle round the profile, 210.0 x 297.0 mm at (0.0, 0.0), was taken"),
         (centre_lines, "the outline round all 3 lines was taken"),
         (gaps, "gaps of up to 0.33 mm between lines were closed"),

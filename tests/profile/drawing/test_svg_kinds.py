@@ -41,6 +41,7 @@ def svg(tmp_path: Path) -> Callable[..., Path]:
               'preserveAspectRatio="xMidYMid slice"'),
         (EGG, 'width="100mm" height="100%" viewBox="0 0 100 110"'),
         (EGG, 'width="10CM" viewBox="0 0 100 110"'),
+        (EGG, 'style="top:0;width:100mm;height:110mm" viewBox="0 0 100 110"'),
         (EGG, f'{PAGE} inkscape:version="0.91 r13725"'),
         (f'<svg x="1" y="2" width="50" height="55" viewBox="0 0 100 110">{EGG}</svg>',
          'width="200mm" height="220mm" viewBox="0 0 100 110"'),
@@ -100,6 +101,8 @@ def test_the_same_egg(
         (f'<rect width="100" height="110" fill="#222"/><path d="{D}" fill="#fff"/>', PAGE, "",
          "a rectangle that covers the page was taken for the page and left out"),
         (f'<path fill="none" d="{D}"/>', PAGE, "", "nothing of the drawing is painted"),
+        (f'<g inkscape:label="Off" style="display:none"><circle r="9"/></g>{EGG}', PAGE, "",
+         "left out of the drawing: 1 hidden layer"),
         (f'<mask id="m"/><g mask="url(#m)">{EGG}</g>', PAGE, "", "left out of the drawing: 1 mask"),
         (f'{EGG}<rect x="30" y="40" width="40" height="40" fill="#fff"/>', PAGE, "",
          "a shape of 40.0 x 40.0 mm lies in it"),
@@ -146,6 +149,10 @@ def test_a_layer_alone_even_if_it_is_hidden(svg: Callable[..., Path]) -> None:
     ("body", "says"),
     [
         ("<text>egg</text>", "only text: turn it into paths"),
+        (
+            '<g inkscape:label="A" display="none"><circle r="9"/></g>',
+            "not hidden: show it, or choose",
+        ),
         ('<image href="data:image/png;base64,x"/>', "only a picture: trace it"),
     ],
 )
