@@ -129,6 +129,8 @@ def _plain(field: str, commas: bool) -> str:
 
     ``commas``: whether a comma may belong to it.
     """
+    if NUMBER.fullmatch(field):
+        return field
     number = field.translate(_BARE)
     if not _LIKE_NUMBER.fullmatch(number):
         return field

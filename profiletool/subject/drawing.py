@@ -79,7 +79,10 @@ def see_drawing(drawn: DrawnLine, asked: ScaleRequest, look: Look) -> SeenLine:
     size = size * scale.mm_per_px
     if scale.source == "vector":
         _check_size(size, drawn.unit)
-    notes = (*drawn.notes, *_contradictions(size, scale, drawn.unit, asked))
+    own = drawn.notes
+    if abs(scale.mm_per_px - 1.0) > _APART:
+        own = tuple(f"{note} (as the drawing's own unit has it)" for note in own)
+    notes = (*own, *_contradictions(size, scale, drawn.unit, asked))
     if scale.source == "vector" and drawn.unit.assumed:
         notes = (f"{drawn.unit.source}; `height_mm` or `width_mm` settle it", *notes)
     return SeenLine(points * scale.mm_per_px, drawn.closed, scale, turn, drawn.unit, notes)

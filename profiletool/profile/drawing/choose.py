@@ -16,7 +16,8 @@ _WIDE = 0.003  # of a drawing's diagonal: a gap that is closed with a note
 _NEAR_SHARE, _NEAR_STEPS, _NEAR_MOST = 0.005, 2.0, 0.05  # how near ends lie that were meant to meet
 _DENSE = 12  # points from which on their spacing says anything
 _WHOLE = 0.8  # of an open line's length: an outline of all lines that is meant instead
-MAX_CLOSE_PAIRS = 2e7  # of pieces of lines that might cross
+MAX_CLOSE_PAIRS = 2e7  # of pieces of a line that might cross
+MAX_CROSSINGS = 1e5  # of such pairs among lines whose common outline is looked for
 
 
 @dataclass(frozen=True)
@@ -118,7 +119,7 @@ def _outer(chains: Sequence[Polyline]) -> Polyline | None:
     """Outline of what lines enclose together; None where that is nothing, or much is outside."""
     import shapely
 
-    if tangled(chains):
+    if tangled(chains, MAX_CROSSINGS):
         return None
     lines = shapely.set_precision(
         [shapely.LinearRing(c.points) if c.closed else shapely.LineString(c.points)
@@ -137,7 +138,7 @@ def _outer(chains: Sequence[Polyline]) -> Polyline | None:
     return clean(shapely.get_coordinates(ring), True)
 
 
-def tangled(chains: Sequence[Polyline]) -> bool:
+def tangled(chains: Sequence[Polyline], most: float = MAX_CLOSE_PAIRS) -> bool:
     """Whether pieces lie across each other so much that finding crossings takes for ever."""
     import shapely
 
@@ -149,7 +150,7 @@ def tangled(chains: Sequence[Polyline]) -> bool:
     pieces = shapely.linestrings(np.concatenate(ends))
     every = max(1, len(pieces) // 200)
     tree = shapely.STRtree(pieces)
-    return every * sum(len(tree.query(piece)) for piece in pieces[::every]) > MAX_CLOSE_PAIRS
+    return every * sum(max(len(tree.query(piece)) - 3, 0) for piece in pieces[::every]) > most
 
 
 def lies_in(inner: Polyline, outer: Polyline) -> bool:

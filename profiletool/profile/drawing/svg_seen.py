@@ -1,4 +1,4 @@
-"""What of an SVG's shapes is seen: paint, clips, and the page that is no shape."""
+"""Shapes of an SVG that are seen: painted, not clipped away, and not the page itself."""
 
 from __future__ import annotations
 
