@@ -1,4 +1,4 @@
-"""What a picture file stores beside its pixels: its way up, its resolution, its focal length."""
+"""Facts that a picture file stores beside its pixels: way up, resolution, focal length."""
 
 from __future__ import annotations
 

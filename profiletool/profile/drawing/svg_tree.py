@@ -1,4 +1,4 @@
-"""What an SVG draws, as a plain tree: groups and shapes with their transforms and their paint."""
+"""Plain tree of all that an SVG draws: groups and shapes with their transforms and paint."""
 
 from __future__ import annotations
 
