@@ -20,6 +20,7 @@ from profiletool.records.units import FloatArray
 
 SUFFIXES = (".dxf", ".svg", ".svgz", ".csv", ".txt", ".tsv", ".dat")
 MAX_BYTES = 20_000_000
+_LOOKED_INTO = 2_000  # pieces of a line whose crossings are looked for
 
 
 def load_vector(path: Path, layer: str | None = None) -> DrawnLine:
@@ -121,10 +122,12 @@ def _crossing(chain: Polyline) -> str:
     import shapely
 
     pieces = shapely.linestrings(np.stack([chain.points[:-1], chain.points[1:]], axis=1))
-    first, second = shapely.STRtree(pieces).query(pieces, predicate="intersects")
-    apart = np.flatnonzero(second - first > 1)
-    if apart.size == 0:
-        return ""
-    k = int(apart[0])
-    x, y = shapely.get_coordinates(shapely.intersection(pieces[first[k]], pieces[second[k]]))[0]
-    return f" at ({x:.1f}, {y:.1f})"
+    tree = shapely.STRtree(pieces)
+    for k, piece in enumerate(pieces[:_LOOKED_INTO]):
+        met = tree.query(piece, predicate="intersects")
+        beyond = met[met > k + 1]
+        if beyond.size:
+            crossing = shapely.intersection(piece, pieces[int(beyond[0])])
+            x, y = shapely.get_coordinates(crossing)[0]
+            return f" at ({x:.1f}, {y:.1f})"
+    return ""
