@@ -118,6 +118,9 @@ def _attempt(
     attempt = attempt_of(request, subject, formula, plan)
     if not request.verify:
         return attempt
+    if plan.hopeless:
+        say(plan.hopeless)
+        return replace(attempt, plan=replace(plan, notes=(*plan.notes, plan.hopeless)))
     checked = _verified(attempt.design, profile, say, progress)
     return holding(replace(attempt, design=checked.design, check=checked))
 

@@ -26,7 +26,7 @@ from profiletool.joints.correction.parameters import PosedChain, parameters_of
 from profiletool.joints.expected import Aim, ErrorSizes, Expected, error_sizes
 from profiletool.joints.layout import Layout
 from profiletool.joints.optimal.choose import TOLERANCE_MM, Choice, ChoiceOptions, choose
-from profiletool.joints.plan import Plan
+from profiletool.joints.plan import Plan, out_of_reach
 from profiletool.profile.curve import points_at
 from profiletool.records.design import AWAY_DEG, TOWARD_DEG, Joint
 from profiletool.records.frames import Shape
@@ -77,7 +77,7 @@ def optimal_plan(
             f"{BAR_PER_MPA * model.pressure[0]:g} bar from which on the joints are known by the "
             f"{_by(model)}"
         )
-    posed, choice, notes = _standing(request, profile, model, say, forward)
+    posed, choice, notes, hopeless = _standing(request, profile, model, say, forward)
     bent = model.shape(posed.chain, posed.pressure, posed.pose, profile.sign)
     return Plan(
         layout=_layout(posed, choice, bent, model, formula),
@@ -87,6 +87,7 @@ def optimal_plan(
         notes=notes,
         choice=choice,
         model=model,
+        hopeless=hopeless,
     )
 
 
@@ -96,11 +97,11 @@ def _standing(
     model: Model,
     say: Callable[[str], None],
     forward: ForwardModel[S] | None,
-) -> tuple[PosedChain, Choice, tuple[str, ...]]:
+) -> tuple[PosedChain, Choice, tuple[str, ...], str]:
     """Choose and correct joints; where the forward model cannot bend them, again at less pressure.
 
-    Where it cannot bend the second choice either, that stays as the bending model corrects it.
-    The notes say so.
+    Where it cannot bend the second choice either, or the first is out of reach, that stays as the
+    bending model corrects it. The notes say so, and the last why it is out of reach.
     """
 
     def by_model(choice: Choice) -> PosedChain:
@@ -117,11 +118,12 @@ def _standing(
             f"joints: {len(choice.chain.openF)} at {BAR_PER_MPA * choice.pressure:.2f} bar, "
             f"{choice.misfit.rms_mm:.2f} mm RMS off the profile by the {_by(model)}"
         )
-        if forward is None:
-            return by_model(choice), choice, ()
+        hopeless = out_of_reach(profile.length_mm, choice.misfit.rms_mm, request)
+        if forward is None or hopeless:
+            return by_model(choice), choice, tuple(notes), hopeless
         try:
             posed = _corrected(request, forward, profile, model, choice, say_fe)
-            return posed, choice, tuple(notes)
+            return posed, choice, tuple(notes), ""
         except CannotBend as problem:
             notes.append(f"the first choice of joints did not stand by FE: {problem}")
             say(notes[-1])
@@ -129,7 +131,7 @@ def _standing(
             spec = replace(spec, max_pressure_bar=BAR_PER_MPA * _AGAIN * problem.reached)
             if problem.reached <= choice.limits.pressure[0]:
                 break
-    return posed, choice, tuple(notes)
+    return posed, choice, tuple(notes), ""
 
 
 def _model(request: Request, formula: Formula) -> Model:

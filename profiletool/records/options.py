@@ -110,9 +110,18 @@ class Option:
 
 
 DESIGN = (
-    Option("--height", "scale.height_mm", _MM, "Full height of the object, mm.", above=0.0),
-    Option("--width", "scale.width_mm", _MM, "Full width of the object, mm.", above=0.0),
-    Option("--mm-per-px", "scale.mm_per_px", _RATIO, "Millimetres per pixel.", above=0.0),
+    Option(
+        "--height", "scale.height_mm", _MM, "Full height of the object, drawn or pictured, mm.",
+        above=0.0,
+    ),
+    Option(
+        "--width", "scale.width_mm", _MM, "Full width of the object, drawn or pictured, mm.",
+        above=0.0,
+    ),
+    Option(
+        "--mm-per-px", "scale.mm_per_px", _RATIO,
+        "Millimetres per pixel, or per unit of a drawing.", above=0.0,
+    ),
     Option(
         "--marker-mm", "scale.marker_mm", _MM,
         "Side of an ArUco DICT_4X4_50 marker in the picture, mm.", above=0.0,
@@ -132,6 +141,14 @@ DESIGN = (
         "Turn the object, deg counter-clockwise; auto: its axis upright.", metavar="auto|DEG",
     ),
     Option("--symmetric", "look.symmetric", _YES, "Take the mean of the object's two sides."),
+    Option(
+        "--flat", "look.flat", _YES,
+        "The object is flat and lies on the marker's or printed sheet's plane.",
+    ),
+    Option(
+        "--layer", "look.layer", ValueKind(str, str),
+        "Read this layer of a DXF alone, or this group of an SVG.",
+    ),
     Option("--side", "side", _choice("left", "right"), "Side of the object to follow.", main=True),
     Option(
         "--from", "start_pct", _PERCENT, "Start of the stretch, % of that side from the top.",

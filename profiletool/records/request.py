@@ -102,6 +102,10 @@ class Look:
         Degrees counter-clockwise to turn the object by.
     symmetric : bool
         Whether to take the mean of the object's two sides.
+    flat : bool
+        Whether the object is flat and lies on the marker's or printed sheet's plane.
+    layer : str or None
+        Of a drawing, to read alone.
     """
 
     box: Box | None = None
@@ -109,6 +113,8 @@ class Look:
     mask: Path | None = None
     rotate: float | Literal["auto"] = 0.0
     symmetric: bool = False
+    flat: bool = False
+    layer: str | None = None
 
 
 Method = Literal["optimal", "paper"]

@@ -150,7 +150,8 @@ def provenance(
 ) -> Markup:
     """Tabulate what the design was made from, and how; ``options`` are those asked for."""
     source, formula = design.source, design.formula
-    scale = "in mm already" if source.mm_per_px is None else scale_text(source, digits=6)
+    own = "in mm already" if source.scale_source == "vector" else "sized as given"
+    scale = own if source.mm_per_px is None else scale_text(source, digits=6)
     rows: list[tuple[str, str]] = [
         ("Input", tag("bdi", source.file)),
         ("SHA-256 of the input", tag("code", source.sha256)),

@@ -62,10 +62,13 @@ def _drawn(design: Design, folder: Path) -> FloatArray | None:
         data = read_file(path, _MOST_BYTES, "a drawing")
         if hashlib.sha256(data).hexdigest() != design.source.sha256:
             return None
+        source = design.source
+        if source.scale_source != "vector":  # sized by an option that the design does not keep
+            return None
         drawn = load_vector(path)
         make = profile_of_object if drawn.closed else profile_of_line
-        reach = Reach(design.source.side, 0.5 * design.tube.outer_diameter_mm)
-        points = changed(drawn.points, design.source.rotated_deg, design.source.symmetric)
+        reach = Reach(source.side, 0.5 * design.tube.outer_diameter_mm)
+        points = changed(drawn.points, source.rotated_deg, source.symmetric)
         return make(points, reach).points
     except (OSError, ValueError, RuntimeError, ProfiletoolError):  # no such place, or no profile
         return None

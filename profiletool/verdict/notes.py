@@ -46,6 +46,7 @@ def notes_of(attempt: Draft, reasons: Sequence[str], misses: Sequence[Missed]) -
         *disagreement(design.joints, design.pressure_bar),
         *shape_warnings(attempt.best_shape, attempt.profile, request.tolerance_mm or DEPTH_MM),
         *_gauze_notes(attempt.plan.layout, design.gauze),
+        *_coarse(design),
         *_fe_notes(attempt.check),
         *model_notes(design, request.method == "optimal" and request.refine),
     )
@@ -192,6 +193,16 @@ def _fe_notes(checked: Check | None) -> Iterator[str]:
     elif checked.run is not None:
         yield from wear(checked.run.verification.last, checked.design)
         yield from uncertain(checked.design.theta_uncertain)
+
+
+def _coarse(design: Design) -> Iterator[str]:
+    """Say where a picture's pixels are larger than what the design claims to be off."""
+    fit, k = design.fit.fe or design.fit.response or design.fit.formula, design.source.mm_per_px
+    if k is not None and k > fit.rms_mm:
+        yield (
+            f"a pixel of the picture is {k:.2g} mm, more than the {fit.rms_mm:.2f} mm RMS that the "
+            "shape is off: the outline itself is hardly known that well"
+        )
 
 
 def _gauze_notes(layout: Layout, gauze: Gauze) -> Iterator[str]:
