@@ -38,7 +38,7 @@ def make_cap(mesh: Mesh) -> Cap:
     thick = a.plug if a.plug > 0.0 else _LEAST * a.diameter
     ring, mid = mesh.X[-1, : mesh.ring].copy(), mesh.X[0, mesh.ring :].copy()
     mid[:, 2] = mesh.z[-1] + 0.5 * thick
-    behind = ring + [0.0, 0.0, thick]
+    behind = ring + np.array([0.0, 0.0, thick])
     bricks = row * mesh.layers + mesh.bricks
     X = np.concatenate([mid, behind])
     inner = row * mesh.layers + mesh.inner

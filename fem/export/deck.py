@@ -6,14 +6,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fem import Law
 from fem.actuator import Actuator
 from fem.arrays import FloatArray, IntArray
 from fem.errors import BadGeometry
 from fem.export.cap import make_cap
 from fem.export.springs import Springs, axial_springs, hoop_springs
-from fem.material import Law
 from fem.mesh import Mesh, make_mesh
 from fem.meshsize import MeshSize
+from fem.principal import principal_stresses
 
 # The engine's kind of mesh with narrower bricks: codes integrate 20 nodes at 2 x 2 x 2 points.
 DECK_MESH = MeshSize(around=8, orders=(2, 2, 2))
@@ -83,7 +84,7 @@ class Deck:
     @property
     def quadratic(self) -> bool:
         """Whether bricks have nodes half-way along their edges."""
-        return self.wall.shape[1] == 20
+        return len(self.wall[0]) == 20
 
     @property
     def cap(self) -> IntArray:
@@ -108,41 +109,35 @@ class Deck:
 
 @dataclass(frozen=True)
 class Cube:
-    """A unit cube of the rubber, one 20-node brick, stretched along its edges.
+    """A unit cube of the rubber, one 20-node brick, stretched along its edges: a check of the law.
 
     Attributes
     ----------
     rubber : Law
-    stretch : (float, float, float)
-        Along x, y and z.
+    stretches : tuple of (float, float, float)
+        Along x, y and z, one step each. The first tries the volume alone.
     """
 
     rubber: Law
-    stretch: tuple[float, float, float] = (1.1, 1.1, 1.1)
+    stretches: tuple[tuple[float, float, float], ...] = ((1.1, 1.1, 1.1), (1.4, 0.9, 0.85))
 
     @property
     def X(self) -> FloatArray:
-        """Nodes in the order of all codes: (20, 3) mm."""
+        """Nodes in the order that all codes share: (20, 3) mm."""
         corners = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
         edges = [(k + i, k + (i + 1) % 4) for k in (0, 4) for i in range(4)]
         edges += [(i, i + 4) for i in range(4)]
         at = np.array(corners, dtype=float)
         return np.concatenate([at, [0.5 * (at[i] + at[k]) for i, k in edges]])
 
-    @property
-    def moved(self) -> tuple[tuple[int, IntArray, float], ...]:
-        """What holds the cube's faces: axis, nodes, displacement in mm."""
-        return tuple(
-            (axis, np.flatnonzero(self.X[:, axis] == side), side * (self.stretch[axis] - 1.0))
-            for axis in range(3)
-            for side in (0.0, 1.0)
-        )
+    def face(self, axis: int, side: int) -> IntArray:
+        """Nodes of the face at 0 or 1 mm along an axis."""
+        return np.flatnonzero(self.X[:, axis] == side)
 
     @property
-    def mean_stress(self) -> float:
-        """Mean of the normal Cauchy stresses, MPa: U' at this swelling."""
-        _, slope, _ = self.rubber.volumetric(np.array(self.stretch).prod(keepdims=True))
-        return float(slope[0])
+    def stresses(self) -> FloatArray:
+        """Normal Cauchy stresses along x, y and z at each step: (steps, 3) MPa."""
+        return principal_stresses(self.rubber, np.array(self.stretches))
 
 
 def for_deck(actuator: Actuator) -> Actuator:

@@ -6,11 +6,11 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from fem import Law, MooneyRivlin, Ogden
 from fem.arrays import IntArray
 from fem.export.deck import Cube, Deck
 from fem.export.springs import Springs
-from fem.export.text import by_stiffness, known, row, rows
-from fem.material import Law, MooneyRivlin, NeoHooke, Ogden
+from fem.export.text import alike, known, row, rows, text
 
 _BRICK = {20: "C3D20R", 8: "C3D8"}
 _WEDGE = {15: "C3D15", 6: "C3D6"}
@@ -35,7 +35,7 @@ def write_calculix(deck: Deck) -> str:
         lines += [*_blown(pressure), "*NODE PRINT, NSET=TIP, FREQUENCY=1000", "U"]
         lines += ["*NODE FILE, FREQUENCY=1000", "U", "*EL FILE, FREQUENCY=1000", "S"]
         lines.append("*END STEP")
-    return _text(lines)
+    return text(lines)
 
 
 def write_abaqus(deck: Deck) -> str:
@@ -50,29 +50,31 @@ def write_abaqus(deck: Deck) -> str:
         lines += ["*STEP, NLGEOM=YES, INC=1000, UNSYMM=YES", "*STATIC", "0.1, 1.0, 1e-6, 0.25"]
         lines += [*_blown(pressure), "*OUTPUT, FIELD, VARIABLE=PRESELECT"]
         lines += ["*NODE PRINT, NSET=TIP, FREQUENCY=1000", "U", "*END STEP"]
-    return _text(lines)
+    return text(lines)
 
 
 def write_cube(cube: Cube) -> str:
     """Write the check cube for either code; it prints the stresses at its Gauss points."""
     lines = ["*NODE, NSET=NALL", *(row(n, *at) for n, at in enumerate(cube.X, start=1))]
     lines += [*_elements("C3D20R", "CUBE", np.arange(20)[None], 0), *_rubber(cube.rubber)]
-    lines += ["*SOLID SECTION, ELSET=CUBE, MATERIAL=RUBBER"]
-    lines += ["*STEP, NLGEOM", "*STATIC", "0.25, 1.0", "*BOUNDARY"]
-    for axis, nodes, value in cube.moved:
-        lines += [row(int(n) + 1, axis + 1, axis + 1, value) for n in nodes]
-    return _text([*lines, "*EL PRINT, ELSET=CUBE", "S", "*END STEP"])
+    lines.append("*SOLID SECTION, ELSET=CUBE, MATERIAL=RUBBER")
+    for stretch in cube.stretches:
+        lines += ["*STEP, NLGEOM", "*STATIC", "0.25, 1.0", "*BOUNDARY"]
+        for axis in range(3):
+            for side in (0, 1):
+                value = side * (stretch[axis] - 1.0)
+                lines += [row(n + 1, axis + 1, axis + 1, value) for n in cube.face(axis, side)]
+        lines += ["*EL PRINT, ELSET=CUBE, FREQUENCY=1000", "S", "*END STEP"]
+    return text(lines)
 
 
 def _model(deck: Deck, references: int) -> Iterator[str]:
     """Nodes, elements, sets and material; ``references`` more nodes on the cap, for its motion."""
-    nodes = len(deck.X)
+    X = np.concatenate([deck.X, [[0.0, 0.0, deck.end]] * references])
     yield f"** {deck.title}"
     yield "** mm, N, MPa; z along the tube, the object at -y"
     yield "*NODE, NSET=NALL"
-    yield from (row(n, *at) for n, at in enumerate(deck.X, start=1))
-    yield "*NODE"
-    yield from (row(nodes + k, 0.0, 0.0, deck.end) for k in range(1, references + 1))
+    yield from (row(n, *at) for n, at in enumerate(X, start=1))
     number = 0
     for name, kinds, elements in (
         ("WALL", _BRICK, deck.wall),
@@ -107,19 +109,19 @@ def _elements(kind: str, name: str, elements: IntArray, before: int) -> Iterator
 def _springs(name: str, springs: Springs, before: int) -> Iterator[str]:
     """Springs by stiffness: a table of force and elongation that no spring leaves.
 
-    Beyond its table a spring would hold its force. CalculiX skips the blank line that Abaqus
-    needs where other springs have a direction.
+    Beyond its table a spring would hold its force. Abaqus needs the blank line, where other springs
+    have their directions; CalculiX skips it, and tells a force by its decimal point.
     """
     far = 2.0 * float(springs.length.max())
     groups = []
-    for group, (k, own) in enumerate(by_stiffness(springs), start=1):
+    for group, (k, own) in enumerate(alike(springs.stiffness), start=1):
         groups.append(f"{name}_{group}")
         yield f"*ELEMENT, TYPE=SPRINGA, ELSET={groups[-1]}"
         for n in own:
             yield row(before + int(n) + 1, *(springs.nodes[n] + 1))
         yield f"*SPRING, NONLINEAR, ELSET={groups[-1]}"
         yield ""
-        yield from (row(0.0, -far), row(0.0, 0.0), row(k * far, far))
+        yield from (f"{force:.9e}, {by:.9g}" for force, by in ((0, -far), (0, 0), (k * far, far)))
     yield f"*ELSET, ELSET={name}"
     yield from (f"{group}," for group in groups)
 
@@ -144,8 +146,6 @@ def _rubber(rubber: Law) -> list[str]:
     law, d = known(rubber), 2.0 / rubber.bulk_modulus
     if isinstance(law, MooneyRivlin):
         words = ["*HYPERELASTIC, MOONEY-RIVLIN", row(law.C10, law.C01, d)]
-    elif isinstance(law, NeoHooke):
-        words = ["*HYPERELASTIC, NEO HOOKE", row(law.C10, d)]
     elif isinstance(law, Ogden):
         # Theirs is 2 mu / alpha^2.
         terms = [v for mu, a in zip(law.mu, law.alpha, strict=True) for v in (0.5 * mu * a, a)]
@@ -158,7 +158,3 @@ def _rubber(rubber: Law) -> list[str]:
 
 def _wrapped(values: list[float]) -> list[str]:
     return [row(*values[k : k + 8]) for k in range(0, len(values), 8)]
-
-
-def _text(lines: Iterable[str]) -> str:
-    return "\n".join(lines) + "\n"

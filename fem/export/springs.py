@@ -128,13 +128,11 @@ def _joined(mesh: Mesh, family: _Family) -> Springs:
     """Add up the springs of two faces on their border; leave out those that are cut."""
     kept = family.EA > 0.0
     low, high = family.nodes[kept].min(axis=1), family.nodes[kept].max(axis=1)
-    pairs, first, which = np.unique(
-        low * mesh.nodes + high, return_index=True, return_inverse=True
-    )
-    stiffness = np.bincount(which, (family.EA / family.length)[kept], minlength=len(pairs))
-    return Springs(
-        np.column_stack([low, high])[first], stiffness, family.length[kept][first]
-    )
+    pairs, first, which = np.unique(low * mesh.nodes + high, return_index=True, return_inverse=True)
+    stiffness: FloatArray = np.bincount(
+        which, (family.EA / family.length)[kept], minlength=len(pairs)
+    ).astype(float)
+    return Springs(np.column_stack([low, high])[first], stiffness, family.length[kept][first])
 
 
 def _threads(mesh: Mesh, family: _Family) -> Threads:

@@ -7,23 +7,15 @@ from itertools import islice
 
 import numpy as np
 
-from fem.arrays import IntArray
-from fem.errors import FemError
-from fem.export.springs import Springs
-from fem.material import Law, MooneyRivlin, NeoHooke, Ogden, Yeoh
+from fem import Law, MooneyRivlin, NeoHooke, Ogden, Yeoh
+from fem.arrays import FloatArray, IntArray
 
-_DIGITS = 9  # of a stiffness: springs that agree so far share a section
-
-
-class NoSuchDeck(FemError):
-    """A deck cannot hold such an actuator; the message says why."""
+_DIGITS = 9  # springs whose stiffness agrees so far share a section
 
 
 def row(*values: float, apart: str = ", ") -> str:
     """Numbers in one row, integers as such."""
-    return apart.join(
-        str(v) if isinstance(v, (int, np.integer)) else f"{v:.12g}" for v in values
-    )
+    return apart.join(str(v) if isinstance(v, (int, np.integer)) else f"{v:.12g}" for v in values)
 
 
 def rows(values: Iterable[int], count: int, apart: str = ", ") -> Iterator[str]:
@@ -33,29 +25,30 @@ def rows(values: Iterable[int], count: int, apart: str = ", ") -> Iterator[str]:
         yield apart.join(map(str, chunk))
 
 
-def by_stiffness(springs: Springs) -> Iterator[tuple[float, IntArray]]:
-    """Stiffness (N/mm) and numbers of the springs that share it, the softest first."""
-    rounded = np.array([float(f"{k:.{_DIGITS}g}") for k in springs.stiffness])
-    for k in np.unique(rounded):
-        yield float(k), np.flatnonzero(rounded == k)
+def alike(values: FloatArray) -> Iterator[tuple[float, IntArray]]:
+    """Values, the smallest first, and the numbers of all that share it to nine digits."""
+    rounded = np.array([float(f"{value:.{_DIGITS}g}") for value in values])
+    for value in np.unique(rounded):
+        yield float(value), np.flatnonzero(rounded == value)
 
 
-def mooney(rubber: Law) -> tuple[float, float] | None:
-    """C10 and C01 of Mooney-Rivlin and neo-Hookean rubbers, MPa; None for others."""
-    if isinstance(rubber, MooneyRivlin):
-        return rubber.C10, rubber.C01
-    return (rubber.C10, 0.0) if isinstance(rubber, NeoHooke) else None
-
-
-def known(rubber: Law) -> MooneyRivlin | NeoHooke | Yeoh | Ogden:
-    """Take a rubber that decks have words for.
+def known(rubber: Law) -> MooneyRivlin | Yeoh | Ogden:
+    """Take a rubber that decks have words for; a neo-Hookean one is Mooney-Rivlin with C01 = 0.
 
     Raises
     ------
-    NoSuchDeck
+    ValueError
+        For any other law.
     """
-    if isinstance(rubber, (MooneyRivlin, NeoHooke, Yeoh, Ogden)):
+    if isinstance(rubber, NeoHooke):
+        return MooneyRivlin(rubber.C10, 0.0, rubber.K)
+    if isinstance(rubber, (MooneyRivlin, Yeoh, Ogden)):
         return rubber
-    raise NoSuchDeck(
+    raise ValueError(
         f"a deck holds Mooney-Rivlin, neo-Hookean, Yeoh and Ogden rubbers, not {rubber.name}"
     )
+
+
+def text(lines: Iterable[str]) -> str:
+    """Put lines into a file."""
+    return "\n".join(lines) + "\n"
