@@ -46,7 +46,9 @@ def _run(commands: typer.Typer) -> None:
         code = UsageError.exit_code
         message = problem.format_message().replace("Value error, ", "").rstrip(".")
         # No arguments at all: the message is the help page.
-        typer.echo(message if "\n" in message else f"error: {message}; see --help", err=True)
+        page = message.startswith("Usage:")
+        words = " ".join(message.split())
+        typer.echo(message if page else f"error: {words}; see --help", err=True)
     sys.exit(code or 0)
 
 
