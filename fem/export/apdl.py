@@ -64,7 +64,7 @@ def write_cube(cube: Cube) -> str:
 def _head(title: str, quadratic: bool) -> list[str]:
     """Begin; KEYOPT(2) = 0: mean volume change for 8 nodes, 2 x 2 x 2 points for 20."""
     return [
-        f"/TITLE,{title[:72]}",
+        f"/TITLE,{title}",
         "! mm, N, MPa; z along the tube, the object at -y",
         "/PREP7",
         f"ET,{_SOLID},{186 if quadratic else 185}",

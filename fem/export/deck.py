@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -42,6 +43,7 @@ class Deck:
     Attributes
     ----------
     title : str
+        Of plain letters: no code takes it for a command.
     X : (N, 3) mm
     wall : (B, 20 or 8) int
         WALL: the rubber, corners inside first.
@@ -197,7 +199,7 @@ def deck_of(mesh: Mesh, pressures: tuple[float, ...], title: str = "") -> Deck:
     plane = np.flatnonzero(np.abs(X[:, 0]) < 1e-9 * mesh.actuator.radius)
     facing = row * mesh.layers + mesh.outer_ring
     return Deck(
-        title=title,
+        title=re.sub(r"[^\w .,/()+]+", "_", title, flags=re.ASCII)[:72],
         X=X,
         wall=wall[:, order],
         wedges=cap.wedges,

@@ -11,7 +11,7 @@ from fem.arrays import FloatArray, IntArray
 from fem.export.deck import Cube, Deck
 from fem.export.text import alike, known, row, rows, text
 
-_PARTS = 10  # substeps of a step
+_PARTS = 10  # substeps of a step, at least
 # The pressure model of U = K/2 (J - 1)^2; the default is K/2 (ln J)^2.
 _PRESSURE_MODEL = 2
 # First faces of bricks and wedges, turned: a surface's normal leaves the solid.
@@ -34,7 +34,7 @@ def write_febio(deck: Deck) -> str:
     domain = ' elem_type="HEX20G8"' if deck.quadratic else ""
     return text(
         [
-            *_head(deck.title, len(deck.pressures)),
+            *_head(deck.title, len(deck.pressures), 1),
             "<Material>",
             *_rubber(deck.rubber),
             '<material id="2" name="CAP" type="rigid body">',
@@ -69,7 +69,7 @@ def write_febio(deck: Deck) -> str:
 def write_cube(cube: Cube) -> str:
     """Write the check cube; it lists the stresses of its brick in stress.txt."""
     faces = [(f"{axis}{side}", k, side) for k, axis in enumerate("xyz") for side in (0, 1)]
-    lines = [*_head("check cube", len(cube.stretches)), "<Material>", *_rubber(cube.rubber)]
+    lines = [*_head("check cube", len(cube.stretches), 3), "<Material>", *_rubber(cube.rubber)]
     lines += ["</Material>", "<Mesh>", *_nodes(cube.X)]
     lines += _elements("CUBE", np.arange(20)[None], 0)
     for name, axis, side in faces:
@@ -91,12 +91,16 @@ def write_cube(cube: Cube) -> str:
     return text([*lines, *_output(stress)])
 
 
-def _head(title: str, steps: int) -> list[str]:
-    """Begin: a step is a second, of which every whole one is reached and printed."""
+def _head(title: str, steps: int, curves: int) -> list[str]:
+    """Begin: a step is a second, and every whole second is reached and printed.
+
+    The last load curve, behind ``curves`` others, says which times must be reached, and by steps
+    of what length.
+    """
     part = 1.0 / _PARTS
     return [
         '<?xml version="1.0" encoding="UTF-8"?>',
-        f"<!-- {title.replace('--', '- -')}; mm, N, MPa; z along the tube, the object at -y -->",
+        f"<!-- {title}; mm, N, MPa; z along the tube, the object at -y -->",
         '<febio_spec version="4.0">',
         '<Module type="solid"/>',
         "<Control>",
@@ -109,7 +113,7 @@ def _head(title: str, steps: int) -> list[str]:
         "<max_retries>20</max_retries>",
         "<opt_iter>15</opt_iter>",
         f"<dtmin>{0.001 * part:g}</dtmin>",
-        f'<dtmax lc="{_MUST}">{part:g}</dtmax>',
+        f'<dtmax lc="{curves + 1}">0</dtmax>',
         "</time_stepper>",
         '<solver type="solid">',
         "<max_refs>50</max_refs>",
@@ -118,9 +122,6 @@ def _head(title: str, steps: int) -> list[str]:
         "</Control>",
         "<Globals><Constants><T>0</T><P>0</P><R>0</R><Fc>0</Fc></Constants></Globals>",
     ]
-
-
-_MUST = 9  # the load curve of times that must be reached
 
 
 def _rubber(rubber: Law) -> Iterator[str]:
@@ -235,7 +236,7 @@ def _curves(series: Sequence[Sequence[float]]) -> Iterator[str]:
     yield "<LoadData>"
     for number, values in enumerate(series, start=1):
         yield from _curve(number, "LINEAR", [0.0, *values])
-    yield from _curve(_MUST, "STEP", [1.0] * (count + 1))
+    yield from _curve(len(series) + 1, "STEP", [1.0 / _PARTS] * (count + 1))
     yield "</LoadData>"
 
 

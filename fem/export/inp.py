@@ -55,7 +55,8 @@ def write_abaqus(deck: Deck) -> str:
 
 def write_cube(cube: Cube) -> str:
     """Write the check cube for either code; it prints the stresses at its Gauss points."""
-    lines = ["*NODE, NSET=NALL", *(row(n, *at) for n, at in enumerate(cube.X, start=1))]
+    lines = ["*HEADING", "check cube"]
+    lines += ["*NODE, NSET=NALL", *(row(n, *at) for n, at in enumerate(cube.X, start=1))]
     lines += [*_elements("C3D20R", "CUBE", np.arange(20)[None], 0), *_rubber(cube.rubber)]
     lines.append("*SOLID SECTION, ELSET=CUBE, MATERIAL=RUBBER")
     for stretch in cube.stretches:
@@ -71,7 +72,8 @@ def write_cube(cube: Cube) -> str:
 def _model(deck: Deck, references: int) -> Iterator[str]:
     """Nodes, elements, sets and material; ``references`` more nodes on the cap, for its motion."""
     X = np.concatenate([deck.X, [[0.0, 0.0, deck.end]] * references])
-    yield f"** {deck.title}"
+    yield "*HEADING"
+    yield deck.title
     yield "** mm, N, MPa; z along the tube, the object at -y"
     yield "*NODE, NSET=NALL"
     yield from (row(n, *at) for n, at in enumerate(X, start=1))

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -50,7 +52,7 @@ RUBBERS: list[Law] = [
 @pytest.fixture(scope="module", params=ACTUATORS)
 def made(request: pytest.FixtureRequest) -> tuple[Deck, Mesh]:
     actuator, size = ACTUATORS[request.param]
-    return make_deck(actuator, (0.05, 0.1), size, "a -- b")
+    return make_deck(actuator, (0.05, 0.1), size, "a--b$\n*STEP")
 
 
 @pytest.fixture(scope="module")
@@ -126,6 +128,29 @@ def test_a_sector_may_end_between_mesh_lines() -> None:
     gauze = Actuator(22.0, ()).gauze
     for low, high in pairwise(sums):
         assert high - low == pytest.approx(gauze.stiffness * 5.0 * 10.0 * 0.5 * 0.05, rel=1e-9)
+
+
+def test_a_title_is_no_command(made: tuple[Deck, Mesh]) -> None:
+    deck, _ = made
+    assert deck.title == "a_b_STEP"
+    for form in FORMATS.values():
+        assert any("a_b_STEP" in line for line in form.write(deck).splitlines()[:3])
+
+
+def test_every_pressure_is_a_step(made: tuple[Deck, Mesh]) -> None:
+    deck, _ = made
+    for code in ("calculix", "abaqus"):
+        assert re.findall(r"INNER, P1, (\S+)", FORMATS[code].write(deck)) == ["0.05", "0.1"]
+    loads = re.findall(r"^SFE,ALL,1,PRES,0,(\S+)", FORMATS["ansys"].write(deck), re.M)
+    assert loads == ["0.05", "0.1"]
+    root = ElementTree.fromstring(FORMATS["febio"].write(deck))
+    # FEBio takes load curves by their order; the one of dtmax holds times and longest steps.
+    curves = root.findall("LoadData/load_controller")
+    assert [curve.attrib["id"] for curve in curves] == ["1", "2"]
+    points = [[point.text for point in curve.iter("pt")] for curve in curves]
+    assert points == [["0,0", "1,0.05", "2,0.1"], ["0,0.1", "1,0.1", "2,0.1"]]
+    assert root.find("Loads/surface_load/pressure").attrib == {"lc": "1"}
+    assert root.find("Control/time_stepper/dtmax").attrib == {"lc": "2"}
 
 
 def test_elements_are_no_mirror_images(made: tuple[Deck, Mesh]) -> None:
