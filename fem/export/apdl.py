@@ -9,7 +9,7 @@ import numpy as np
 from fem import Law, MooneyRivlin, Ogden
 from fem.arrays import FloatArray
 from fem.export.deck import Cube, Deck
-from fem.export.text import alike, known, row, text
+from fem.export.rows import deck_law, groups_of, row, text
 from fem.gauze import THREAD_E
 
 _RUBBER, _CAP, _THREAD = 1, 2, 3  # materials
@@ -90,7 +90,7 @@ def _sections(deck: Deck) -> Iterator[tuple[float, list[int], list[tuple[int, in
     """Area of a link (mm^2), numbers of the elements that have it, and their nodes."""
     number = deck.solids
     for springs in (deck.axial, deck.hoop):
-        for area, own in alike(springs.stiffness * springs.length / THREAD_E):
+        for area, own in groups_of(springs.stiffness * springs.length / THREAD_E):
             nodes = [(int(i) + 1, int(k) + 1) for i, k in springs.nodes[own]]
             yield area, (own + number + 1).tolist(), nodes
         number += len(springs.nodes)
@@ -165,7 +165,7 @@ def _materials(rubber: Law) -> list[str]:
 
 def _rubber(rubber: Law) -> list[str]:
     """Material of the wall, with U = (J - 1)^2 / d."""
-    law, d = known(rubber), 2.0 / rubber.bulk_modulus
+    law, d = deck_law(rubber), 2.0 / rubber.bulk_modulus
     if isinstance(law, MooneyRivlin):
         return [f"TB,HYPER,{_RUBBER},1,2,MOONEY", f"TBDATA,1,{row(law.C10, law.C01, d, apart=',')}"]
     if isinstance(law, Ogden):

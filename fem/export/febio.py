@@ -9,7 +9,7 @@ import numpy as np
 from fem import Law, MooneyRivlin, Ogden
 from fem.arrays import FloatArray, IntArray
 from fem.export.deck import Cube, Deck
-from fem.export.text import alike, known, row, rows, text
+from fem.export.rows import deck_law, groups_of, row, rows, text
 
 _PARTS = 10  # substeps of a step, at least
 # The pressure model of U = K/2 (J - 1)^2; the default is K/2 (ln J)^2.
@@ -29,7 +29,7 @@ def write_febio(deck: Deck) -> str:
     groups = [
         (f"{name}_{number}", k, springs.nodes[own])
         for name, springs in (("THREAD_AXIAL", deck.axial), ("THREAD_HOOP", deck.hoop))
-        for number, (k, own) in enumerate(alike(springs.stiffness), start=1)
+        for number, (k, own) in enumerate(groups_of(springs.stiffness), start=1)
     ]
     domain = ' elem_type="HEX20G8"' if deck.quadratic else ""
     return text(
@@ -125,7 +125,7 @@ def _head(title: str, steps: int, curves: int) -> list[str]:
 
 
 def _rubber(rubber: Law) -> Iterator[str]:
-    law = known(rubber)
+    law = deck_law(rubber)
     if isinstance(law, MooneyRivlin):
         name, values = "Mooney-Rivlin", {"c1": law.C10, "c2": law.C01}
     elif isinstance(law, Ogden):

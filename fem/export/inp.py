@@ -9,8 +9,8 @@ import numpy as np
 from fem import Law, MooneyRivlin, Ogden
 from fem.arrays import IntArray
 from fem.export.deck import Cube, Deck
+from fem.export.rows import deck_law, groups_of, row, rows, text
 from fem.export.springs import Springs
-from fem.export.text import alike, known, row, rows, text
 
 _BRICK = {20: "C3D20R", 8: "C3D8"}
 _WEDGE = {15: "C3D15", 6: "C3D6"}
@@ -116,7 +116,7 @@ def _springs(name: str, springs: Springs, before: int) -> Iterator[str]:
     """
     far = 2.0 * float(springs.length.max())
     groups = []
-    for group, (k, own) in enumerate(alike(springs.stiffness), start=1):
+    for group, (k, own) in enumerate(groups_of(springs.stiffness), start=1):
         groups.append(f"{name}_{group}")
         yield f"*ELEMENT, TYPE=SPRINGA, ELSET={groups[-1]}"
         for n in own:
@@ -145,7 +145,7 @@ def _blown(pressure: float) -> list[str]:
 
 def _rubber(rubber: Law) -> list[str]:
     """Material RUBBER, with U = (J - 1)^2 / D1."""
-    law, d = known(rubber), 2.0 / rubber.bulk_modulus
+    law, d = deck_law(rubber), 2.0 / rubber.bulk_modulus
     if isinstance(law, MooneyRivlin):
         words = ["*HYPERELASTIC, MOONEY-RIVLIN", row(law.C10, law.C01, d)]
     elif isinstance(law, Ogden):

@@ -11,7 +11,7 @@ import typer
 from profiletool.cli.console import Debug, Quiet, exit_codes, speaker
 from profiletool.cli.fe import Force, check_run, failures, fe_progress
 from profiletool.cli.rows import parameters_of, parameters_of_rows, with_signature
-from profiletool.errors import Infeasible, UnreadableInput, UsageError
+from profiletool.errors import Infeasible, NotVerified, UnreadableInput, UsageError
 from profiletool.records.making import model_of
 from profiletool.records.options import MODEL
 
@@ -79,6 +79,11 @@ def deck(
             )
         write.write_folder(folder, outputs.deck_files(made), force)
         speaker(quiet)(f"written: {folder}")
+        if made.reached_bar < most - 1e-9:
+            raise NotVerified(
+                f"our own finite elements came to {made.reached_bar:.2f} bar, not to the "
+                f"{most:.2f} bar of the deck; ask for less with --pressure"
+            )
 
 
 with_signature(deck, parameters_of(deck), parameters_of(DeckOptions), parameters_of_rows(MODEL))

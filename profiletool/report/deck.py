@@ -72,6 +72,12 @@ class DeckOutput:
     verified: Verification | None = None
 
     @property
+    def reached_bar(self) -> float:
+        """How far this engine came; the last pressure where it was not run."""
+        pressures = self.deck.pressures if self.expected is None else self.expected.pressure
+        return BAR_PER_MPA * float(max((0.0, *pressures)))
+
+    @property
     def format(self) -> Format:
         """The code, and how decks for it are written."""
         return FORMATS[self.code]
@@ -174,8 +180,7 @@ def _readme(output: DeckOutput) -> bytes:
         axial=len(deck.axial.nodes), axial_k=deck.axial.stiffness.sum(),
         hoop=len(deck.hoop.nodes), hoop_k=deck.hoop.stiffness.sum(),
         steps=len(deck.pressures), most=BAR_PER_MPA * max(deck.pressures),
-        links="LINK180 of E = 2000 MPa and the area that gives it" if output.code == "ansys"
-        else "a spring",
+        links="a LINK180 (E = 2000 MPa)" if output.code == "ansys" else "a spring",
     ).encode()  # fmt: skip
 
 
@@ -189,9 +194,8 @@ def _what_to_expect(output: DeckOutput) -> str:
         "the volume of the air for the same bricks and springs. Expect theta and TIP\n"
         "within 1 %."
     )
-    steps = len(output.deck.pressures)
-    if (reached := len(output.expected.pressure)) < steps:
-        text += f"\nThis engine came to step {reached} of {steps}."
+    if len(output.expected.pressure) < len(output.deck.pressures):
+        text += f"\nThis engine came to {output.reached_bar:.2f} bar."
     return text
 
 

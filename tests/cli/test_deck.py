@@ -3,24 +3,28 @@
 from __future__ import annotations
 
 import json
+from argparse import Namespace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from fem.export.expected import Expected
+from profiletool.report import deck
 from tests.calls import call, error_of
 
 DESIGN = "paper_bulb.json"
-ENDINGS = {"calculix": ".inp", "abaqus": ".inp", "ansys": ".dat", "febio": ".feb"}
 
 
-@pytest.mark.parametrize("code", ENDINGS)
-def test_a_deck_and_what_lies_beside_it(samples: Path, tmp_path: Path, code: str) -> None:
+@pytest.mark.parametrize(("code", "ending"), [("ansys", ".dat"), ("febio", ".feb")])
+def test_a_deck_and_what_lies_beside_it(
+    samples: Path, tmp_path: Path, code: str, ending: str
+) -> None:
     options = ("--for", code, "--no-verify", "--thread-factor", "2")
     assert call("deck", samples / DESIGN, *options).exit_code == 0
     folder = tmp_path / f"paper_bulb_{code}"
     assert {file.name for file in folder.iterdir()} == {
-        f"actuator{ENDINGS[code]}", f"cube{ENDINGS[code]}", "README.txt", "design.json",
+        f"actuator{ending}", f"cube{ending}", "README.txt", "design.json",
     }  # fmt: skip
     assert json.loads((folder / "design.json").read_text())["model"]["thread_factor"] == 2.0
     assert call("deck", samples / DESIGN, *options, "--quiet", "--force").stderr == ""
@@ -34,6 +38,19 @@ def test_meshes_and_pressures(samples: Path, tmp_path: Path) -> None:
     assert "C3D20R" not in text
     assert text.count("*STEP") == 10
     assert text.count("INNER, P1, 0.12\n") == 1
+
+
+def test_an_engine_that_stops_early_says_so(
+    samples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = Expected(np.array([0.01]), np.zeros((1, 6)), np.zeros((1, 3)), np.zeros(1))
+    monkeypatch.setattr(deck, "expect", lambda *_: found)
+    monkeypatch.setattr(deck, "run_design", lambda *_: Namespace(verification=None))
+    options = ("--for", "abaqus", "--mesh", "paper", "--out", "early")
+    result = call("deck", samples / DESIGN, *options)
+    assert result.exit_code == 7
+    assert "came to 0.10 bar, not to the 1.90 bar of the deck" in error_of(result)
+    assert len((tmp_path / "early" / "expected.csv").read_text().splitlines()) == 2
 
 
 @pytest.mark.slow

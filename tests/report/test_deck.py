@@ -47,10 +47,12 @@ def test_the_readme_says_what_was_run_and_what_is_missing(output: DeckOutput) ->
     ]  # fmt: skip
     text = files["README.txt"].decode()
     for words in (
-        "Abaqus was NOT run", "mean 1.0648", "came to step 2 of 10", f"{len(output.deck.X)} nodes",
+        "Abaqus was NOT run", "mean 1.0648", "came to 0.20 bar", f"{len(output.deck.X)} nodes",
         f"{output.deck.axial.stiffness.sum():.6g} N/mm",
     ):  # fmt: skip
         assert words in text
+    assert output.reached_bar == pytest.approx(0.2)
+    assert replace(output, expected=None).reached_bar == pytest.approx(1.0)
     bare = deck_files(replace(output, expected=None, code="calculix"))
     assert "expected.csv" not in bare
     assert "CalculiX 2.20 was run" in bare["README.txt"].decode()

@@ -25,14 +25,14 @@ def rows(values: Iterable[int], count: int, apart: str = ", ") -> Iterator[str]:
         yield apart.join(map(str, chunk))
 
 
-def alike(values: FloatArray) -> Iterator[tuple[float, IntArray]]:
+def groups_of(values: FloatArray) -> Iterator[tuple[float, IntArray]]:
     """Values, the smallest first, and the numbers of all that share it to nine digits."""
     rounded = np.array([float(f"{value:.{_DIGITS}g}") for value in values])
     for value in np.unique(rounded):
         yield float(value), np.flatnonzero(rounded == value)
 
 
-def known(rubber: Law) -> MooneyRivlin | Yeoh | Ogden:
+def deck_law(rubber: Law) -> MooneyRivlin | Yeoh | Ogden:
     """Take a rubber that decks have words for; a neo-Hookean one is Mooney-Rivlin with C01 = 0.
 
     Raises
