@@ -1,4 +1,4 @@
-"""Files of results, by registries: `DESIGN_FILES`, `FE_FILES` and `TEMPLATE_FILES`.
+"""Files of results, by registries: `DESIGN_FILES`, `FE_FILES`, `TEMPLATE_FILES`, `DECK_FILES`.
 
 A row gives a file's name and the function that writes it: one function and one row add a file.
 """
@@ -17,6 +17,7 @@ from profiletool.records.design import Design
 from profiletool.records.options import in_flags
 from profiletool.records.units import FloatArray
 from profiletool.report.candidates import draw_candidates
+from profiletool.report.deck import DECK_FILES, DeckOutput
 from profiletool.report.dossier import dossier_of, formula_marks
 from profiletool.report.error import error_figure
 from profiletool.report.fe_files import FE_FILES, MESH_FILES, THETA_FILES, FeOutput
@@ -219,6 +220,13 @@ def template_files(
 ) -> dict[str, bytes]:
     """Draw a template of a design for cutters, plotters and printers: name to content."""
     return written(TEMPLATE_FILES, TemplateOutput(design, wish, paper, version))
+
+
+def deck_files(output: DeckOutput) -> dict[str, bytes]:
+    """Write a design's model for another code: name to content."""
+    ending = output.format.ending
+    rows = {name.format(ending=ending): write for name, write in DECK_FILES.items()}
+    return {**written(rows, output), "design.json": to_json(output.design).encode()}
 
 
 def candidates_png(unsure: Unsure) -> bytes:

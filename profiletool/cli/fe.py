@@ -53,7 +53,7 @@ def joint(
     """Run finite elements of one joint, Root = F1 = 30 mm."""
     with exit_codes(debug):
         model = model_of(options, PAPER_MODEL)
-        _check_run(pressure, out, force)
+        check_run(pressure, out, force)
         if not 0.0 <= alpha_center <= 360.0:
             raise UsageError(f"--alpha-center must be 0 to 360, not {alpha_center:g}")
         from profiletool import outputs
@@ -64,7 +64,7 @@ def joint(
         from profiletool.verify.tube import joint_actuator
 
         spec = TubeSpec(outer_diameter_mm=diameter, wall_mm=wall)
-        with _failures(UsageError), _bar(pressure, quiet) as progress:
+        with failures(UsageError), fe_progress(pressure, quiet) as progress:
             actuator = joint_actuator(openF, alpha, alpha_center, spec, model)
             run = inflate(actuator, pressures_to(pressure), LYING, DOWN, progress=progress)
         found = run.verification
@@ -94,14 +94,14 @@ def finger(
     """Run finite elements of the paper's three-joint finger (Table 2)."""
     with exit_codes(debug):
         model = model_of(options, PAPER_MODEL)
-        _check_run(pressure, out, force)
+        check_run(pressure, out, force)
         from profiletool import outputs
         from profiletool.files import write
         from profiletool.report.fe import fe_json, fe_text, ranges_json, ranges_text
         from profiletool.verify.run import DOWN, LYING, inflate, pressures_to
         from profiletool.verify.tube import finger_actuator
 
-        with _failures(UsageError), _bar(pressure, quiet) as progress:
+        with failures(UsageError), fe_progress(pressure, quiet) as progress:
             asked = pressures_to(pressure, 0.1)
             run = inflate(finger_actuator(model), asked, LYING, DOWN, progress=progress)
         found = run.verification
@@ -141,7 +141,7 @@ def verify(
     design was made from.
     """
     with exit_codes(debug):
-        _check_run(pressure, out, force)
+        check_run(pressure, out, force)
         from profiletool import outputs
         from profiletool.files import write
         from profiletool.files.design_json import load_design
@@ -155,9 +155,9 @@ def verify(
         design = load_design(file)
         design = replace(design, model=model_of(options, design.model))
         most = design.pressure_bar if pressure is None else pressure
-        _check_run(most, None, force)
+        check_run(most, None, force)
         wrong = UnreadableInput if design.feasible else Infeasible
-        with _failures(wrong, f"{file}: "), _bar(most, quiet) as progress:
+        with failures(wrong, f"{file}: "), fe_progress(most, quiet) as progress:
             run = run_design(design, most, progress)
         found = run.verification
         target = target_of(design, file)
@@ -238,7 +238,7 @@ def _model_text(model: ModelInputs, apart: BuiltMisfit | None) -> str:
     return text
 
 
-def _check_run(pressure: float | None, out: Path | None, force: bool) -> None:
+def check_run(pressure: float | None, out: Path | None, force: bool) -> None:
     """Refuse what cannot be run or written, before it takes any time."""
     if pressure is not None and not (math.isfinite(pressure) and 0.0 < pressure <= _MOST_BAR):
         raise UsageError(
@@ -251,7 +251,7 @@ def _check_run(pressure: float | None, out: Path | None, force: bool) -> None:
 
 
 @contextmanager
-def _failures(
+def failures(
     geometry: type[UsageError] | type[UnreadableInput] | type[Infeasible], where: str = ""
 ) -> Iterator[None]:
     """Turn what finite elements raise into our errors."""
@@ -267,7 +267,7 @@ def _failures(
 
 
 @contextmanager
-def _bar(most: float, quiet: bool) -> Iterator[Callable[[float], None]]:
+def fe_progress(most: float, quiet: bool) -> Iterator[Callable[[float], None]]:
     """Show how far the pressure has come, bar."""
     with progress_bar("finite elements", quiet) as show:
 

@@ -7,7 +7,7 @@ from typing import Annotated, cast
 
 import typer
 
-from profiletool.cli import derive, design, fe, table, template, trim
+from profiletool.cli import deck, derive, design, fe, table, template, trim
 from profiletool.errors import UsageError
 from profiletool.records.version import VERSION
 
@@ -46,7 +46,9 @@ def _run(commands: typer.Typer) -> None:
         code = UsageError.exit_code
         message = problem.format_message().replace("Value error, ", "").rstrip(".")
         # No arguments at all: the message is the help page.
-        typer.echo(message if "\n" in message else f"error: {message}; see --help", err=True)
+        page = message.startswith("Usage:")
+        words = " ".join(message.split())
+        typer.echo(message if page else f"error: {words}; see --help", err=True)
     sys.exit(code or 0)
 
 
@@ -77,6 +79,7 @@ for _command, _example in (
     (table.table, "profiletool table --openF 6,8,10 --csv"),
     (table.assign, "profiletool assign --openF 8,8,8,8,6,10 --theta 30,30,30,25,20,45"),
     (trim.trim, "profiletool trim bulb_design/design.json --tip -22.4,-96.6 --at 1.67"),
+    (deck.deck, "profiletool deck bulb_design/design.json --for calculix --out bulb_calculix"),
     (template.template, "profiletool template bulb_design/design.json --variant strip"),
     (template.sheet, "profiletool sheet --paper letter --out sheet.pdf"),
 ):
