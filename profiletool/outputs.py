@@ -97,10 +97,11 @@ class DesignOutput:
     @cached_property
     def mounting(self) -> Mounting:
         """The tube clamped beside its object, and the palm that is drilled for it."""
-        scene = self.scene
-        bent = scene.bent if scene.fe is None else scene.fe
-        profile = self.result.subject.profile
-        return mounting_drawing(self.result.design, profile, scene.straight, bent)
+        result, asked = self.result, self.result.request
+        stretch = asked.start_pct, asked.end_pct
+        return mounting_drawing(
+            result.design, result.profile, self.scene.straight, result.best_shape, stretch
+        )
 
     @cached_property
     def fe(self) -> FeOutput | None:

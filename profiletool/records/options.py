@@ -13,6 +13,7 @@ from pathlib import Path, PurePath
 from typing import Any
 
 from profiletool.records.built import BuildErrors
+from profiletool.records.clamp import LEAST_MM
 from profiletool.records.request import Request
 
 
@@ -149,7 +150,12 @@ DESIGN = (
     ),
     Option(
         "--root", "tube.root_mm", _ROOT,
-        "Least clamped length before the first joint's centre, mm.", above=0.0,
+        "Least length from the clamp's edge to the first joint's centre, mm.", above=0.0,
+    ),
+    Option(
+        "--clamp", "tube.clamp_mm", _MM,
+        "Tube and gauze that are held behind the clamp's edge, mm (default: one diameter).",
+        least=LEAST_MM, absent="one diameter",
     ),
     Option(
         "--pitch", "tube.pitch_mm", _MM, "Mesh pitch of the gauze, mm.", above=0.0, main=True

@@ -17,7 +17,7 @@ from profiletool.records.frames import Shape
 from profiletool.records.units import FloatArray
 from profiletool.report.overlay_panel import best_theta_deg, draw_panel
 from profiletool.report.palette import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, RED, SKY, YELLOW
-from profiletool.report.scene import Scene
+from profiletool.report.scene import Scene, clamp_ring
 
 _DPI = 130
 _MARGIN_MM = 12.0
@@ -60,7 +60,7 @@ def draw_overlay(scene: Scene) -> bytes:
 def _limits(scene: Scene) -> tuple[float, float, float, float]:
     parts = [
         scene.bent.facing, scene.bent.far, scene.straight.facing, scene.straight.far,
-        scene.profile.points,
+        scene.profile.points, clamp_ring(scene),
     ]  # fmt: skip
     if scene.fe is not None:
         parts += [scene.fe.facing, scene.fe.far]
@@ -138,10 +138,10 @@ def _draw_bent(axes: Any, scene: Scene, bent: Shape, colour: str, label: str) ->
         within = np.abs(bent.along - bend.centre_mm) <= 0.5 * bend.openF_mm + 1e-9
         window = np.concatenate([bent.facing[within], bent.far[within][::-1]])
         _fill(axes, window, facecolor=colour, alpha=0.30, lw=0, zorder=4)
-    root = scene.design.tube.root_mm - 0.5 * scene.design.joints[0].openF_mm
-    clamped = bent.along <= root + 1e-9
-    clamp = np.concatenate([bent.facing[clamped], bent.far[clamped][::-1]])
-    _fill(axes, clamp, facecolor="none", edgecolor=INK, hatch="////", lw=0.0, alpha=0.45, zorder=5)
+    _fill(
+        axes, clamp_ring(scene), facecolor="none", edgecolor=INK, hatch="////", lw=0.8, alpha=0.45,
+        zorder=5, label="clamp",
+    )  # fmt: skip
 
 
 def _ring(shape: Shape) -> FloatArray:

@@ -125,7 +125,7 @@ def legend(
         "seam": short(design.gauze.seam_deg),
         "times": times(design.gauze.turns),
         "diameter": f"{design.tube.outer_diameter_mm:g}",
-        "size": " x ".join(short(side) for side in sheet_size(design.tube, design.gauze)),
+        "size": " x ".join(short(side) for side in sheet_size(design)),
     }
     width = min(right - left, LEGEND_MM)
     hang = text_width("1 ", SMALL_MM) + SMALL_MM / 4
@@ -182,7 +182,8 @@ def _facts(design: Design, size: tuple[float, float], wish: Wish) -> list[str]:
     date = "".join(char for char in wish.date if char.isprintable())
     return [
         f"Tube D {tube.outer_diameter_mm:g}, wall {tube.wall_mm:g}, length "
-        f"{short(tube.length_mm)} mm.  Pressure {design.pressure_bar:.2f} bar.  "
+        f"{short(tube.length_mm)}, clamp {short(design.clamp.length_mm)} mm.  "
+        f"Pressure {design.pressure_bar:.2f} bar.  "
         f"Joints: {len(design.joints)}." + (f"  {date[:DATE_CHARS]}" if date else ""),
         f"{KINDS[wish.variant].piece} {short(size[0])} x {short(size[1])} mm, mesh "
         f"{gauze.pitch_mm:g} mm, thread {gauze.thread_mm:g} mm{turns}, seam "

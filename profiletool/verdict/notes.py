@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from formula.theta import Formula, beyond
+from profiletool.bending.kinematics import deform
 from profiletool.joints.layout import Layout
 from profiletool.joints.misfit import depth_inside
 from profiletool.joints.paper.assign import NEAR_DEG
@@ -19,6 +20,7 @@ from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
 from profiletool.records.request import TubeSpec
 from profiletool.subject.find import drawing_notes
+from profiletool.template.mounted import mounted_of, mounting_warnings
 from profiletool.verdict.draft import Draft
 from profiletool.verdict.missed import Missed
 from profiletool.verdict.model import model_notes
@@ -46,6 +48,7 @@ def notes_of(attempt: Draft, reasons: Sequence[str], misses: Sequence[Missed]) -
         *disagreement(design.joints, design.pressure_bar),
         *shape_warnings(attempt.best_shape, attempt.profile, request.tolerance_mm or DEPTH_MM),
         *_gauze_notes(attempt.plan.layout, design.gauze),
+        *_mounting_notes(attempt),
         *_fe_notes(attempt.check),
         *model_notes(design, request.method == "optimal" and request.refine),
     )
@@ -192,6 +195,17 @@ def _fe_notes(checked: Check | None) -> Iterator[str]:
     elif checked.run is not None:
         yield from wear(checked.run.verification.last, checked.design)
         yield from uncertain(checked.design.theta_uncertain)
+
+
+def _mounting_notes(attempt: Draft) -> Iterator[str]:
+    """Say what the mounting drawing warns of."""
+    request, design, profile = attempt.request, attempt.design, attempt.profile
+    tube = design.tube
+    straight = deform(
+        (), tube.length_mm, 0.5 * tube.outer_diameter_mm, design.base_pose, profile.sign
+    )
+    stretch = request.start_pct, request.end_pct
+    return mounting_warnings(mounted_of(design, profile, straight, attempt.best_shape, stretch))
 
 
 def _gauze_notes(layout: Layout, gauze: Gauze) -> Iterator[str]:

@@ -42,7 +42,7 @@ def test_dxf_reads_back(build):
     outline = np.array(
         [p[:2] for e in entities if e.dxf.layer == "CUT_OUTER" for p in e.get_points()]
     )
-    np.testing.assert_allclose(outline.min(axis=0), [0, 0], atol=1e-9)
+    np.testing.assert_allclose(outline.min(axis=0), [-20, 0], atol=1e-9)
     np.testing.assert_allclose(outline.max(axis=0), [build().tube.length_mm, 130.38], atol=0.01)
     cuts = [[p[:2] for p in e.get_points()] for e in entities if e.dxf.layer == "CUT_INNER"]
     expected = [[(s.x_mm, s.y_start_mm), (s.x_mm, s.y_end_mm)] for s in sheet.slits]
