@@ -36,6 +36,7 @@ from profiletool.records.making import check_request, request_of
 from profiletool.records.picture import Picture
 from profiletool.records.profile import DrawnLine, Profile
 from profiletool.records.request import Request
+from profiletool.records.seal import sealed
 from profiletool.subject.find import Subject
 from profiletool.subject.find import find_subject as find
 from profiletool.verify.check import Check, check, runs_into_itself, withdrawn
@@ -164,7 +165,7 @@ def verify_design(
         return withdrawn(done, failure)
     build = BuildErrors() if design.built is None else design.built.build
     verified, _ = with_errors(done.design, done.run, spaced(points), build)
-    return replace(done, design=verified)
+    return replace(done, design=sealed(verified))
 
 
 def derive_formula(

@@ -15,6 +15,7 @@ from profiletool.pipeline import Result
 from profiletool.profile.shape_csv import shape_csv
 from profiletool.records.design import Design
 from profiletool.records.options import in_flags
+from profiletool.records.seal import proven, sealed
 from profiletool.records.units import FloatArray
 from profiletool.report.candidates import draw_candidates
 from profiletool.report.dossier import dossier_of, formula_marks
@@ -230,9 +231,10 @@ def candidates_png(unsure: Unsure) -> bytes:
 def _in_flags(result: Result) -> Result:
     """Name fields by flags in all that is said: the files are those of the command."""
     design = result.design
+    said = replace(design, warnings=tuple(in_flags(text) for text in design.warnings))
     return replace(
         result,
-        design=replace(design, warnings=tuple(in_flags(text) for text in design.warnings)),
+        design=sealed(said) if proven(design) else said,
         reasons=tuple(in_flags(text) for text in result.reasons),
         misses=tuple(replace(miss, reason=in_flags(miss.reason)) for miss in result.misses),
     )

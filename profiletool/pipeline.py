@@ -15,6 +15,7 @@ from profiletool.records.design import Design
 from profiletool.records.making import check_request
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request
+from profiletool.records.seal import sealed
 from profiletool.subject.find import Subject, find_subject
 from profiletool.verdict.draft import Draft, attempt_of
 from profiletool.verdict.holds import holding
@@ -160,5 +161,5 @@ def _judged(attempt: Draft) -> Result:
     misses = misses_of(attempt)
     reasons = reasons_of(attempt, misses)
     notes = notes_of(attempt, reasons, misses)
-    design = replace(attempt.design, feasible=not reasons, warnings=notes)
+    design = sealed(replace(attempt.design, feasible=not reasons, warnings=notes))
     return Result(**vars(replace(attempt, design=design)), reasons=reasons, misses=misses)

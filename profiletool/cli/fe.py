@@ -182,10 +182,9 @@ def _compared(
     design: Design, found: Verification, target: Target | None, threads: bool
 ) -> tuple[dict[str, Any], str]:
     """Compare a run with its target, and the smeared gauze with single threads: JSON and text."""
-    from profiletool.joints.misfit import misfit_to
-    from profiletool.report.fe import compared_text, fe_text, misfit_json
+    from profiletool.report.fe import compared_text, fe_text, misfit_json, off_target
 
-    off = None if target is None else misfit_to(found.last.shape, target.points)
+    off = None if target is None else off_target(found, target.points)
     beside = None if target is None else target.file
     apart = _single_threads(design) if threads else None
     more = misfit_json(off, beside) | _model_json(design.model, apart)

@@ -225,8 +225,8 @@ class Design:
     fit : Fit
         Distances off the profile.
     feasible, verified : bool
-        Whether it is within the limits; whether finite elements bent these very numbers up to
-        their pressure and a little further, clear of itself.
+        Whether it is within the limits; whether finite elements bent it up to its pressure and a
+        little further, clear of itself. What was changed since is not `proven`.
     warnings : tuple of str
         What its user should know.
     method : {"optimal", "paper"}
@@ -249,6 +249,8 @@ class Design:
         mm RMS; None where it is not computed.
     clamp : Clamp
         How much of tube and gauze is held behind x = 0.
+    seal : str or None
+        Digest of all that finite elements verified; see `profiletool.records.seal`.
     """
 
     source: Source
@@ -271,6 +273,7 @@ class Design:
     threads: tuple[SectorThreads, ...] = ()
     threads_off_mm: BuiltMisfit | None = None
     clamp: Clamp = field(default_factory=Clamp)
+    seal: str | None = None
 
     @property
     def thread_rad(self) -> float:

@@ -8,8 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from profiletool.joints.misfit import misfit_to
 from profiletool.records.design import Design, Misfit
 from profiletool.records.fe import Verification
+from profiletool.records.units import FloatArray
 from profiletool.verify.cautions import cautions
 
 _ANGLE_DECIMALS = 4  # deg: the mesh is good to a hundredth
@@ -88,6 +90,11 @@ def fe_text(found: Verification) -> str:
 def _head(joint: int, found: Verification) -> str:
     """Head of a joint's column, marked where its angle is uncertain."""
     return f"{'~' if joint in found.theta_uncertain else ''}theta{joint}"
+
+
+def off_target(found: Verification, target: FloatArray) -> Misfit:
+    """Say how far the last state lies off a target's points, (N, 2) mm."""
+    return misfit_to(found.last.shape, target)
 
 
 def compared_text(

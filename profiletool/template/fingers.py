@@ -13,7 +13,7 @@ import shapely
 
 from profiletool.profile.symmetry import Symmetry
 from profiletool.records.design import Design
-from profiletool.records.frames import Pose, base_axes
+from profiletool.records.frames import Pose, base_axes, direction
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
 from profiletool.template.labels import short
@@ -27,6 +27,7 @@ _LEVEL = 0.01  # a tube closer to level than this (0.6 deg) never meets the palm
 _SAME_MM = 1e-6
 _TOUCHES_MM = 0.5  # a tube is so soft
 _LEFT_DIAMETERS = 2.0  # of profile that a finger must be left
+_SLIDES_SHARE = 0.3  # of the root, by which the base lies back of the start at most
 _STEEP = 0.5  # a palm whose normal is farther from upright (60 deg) is not placed by the axis
 
 
@@ -128,17 +129,23 @@ def start_for(
         places = (pct + np.array([-0.5, 0.0, 0.5]) - low) / (high - low) * profile.length_mm
         if places[-1] > longest:
             return None
-        poses = (_pose_at(profile, s) for s in places.tolist())
+        # Where joint 1 is wanted before the root allows it, the base lies back of the start.
+        poses = (
+            _pose_at(profile, s, back)
+            for s in places.tolist()
+            for back in (0.0, _SLIDES_SHARE * design.tube.root_mm)
+        )
         tubes = (clamped(pose, design, -profile.sign) for pose in poses)
         if not any(obstacle(tube, axis, fingers, profile.outline) for tube in tubes):
             return pct
     return None
 
 
-def _pose_at(profile: Profile, s: float) -> Pose:
+def _pose_at(profile: Profile, s: float, back: float) -> Pose:
     k = min(int(np.searchsorted(profile.s, s)), len(profile.s) - 1)
-    x, y = profile.points[k].tolist()
-    return Pose(x, y, float(np.degrees(profile.heading[k])))
+    heading = float(profile.heading[k])
+    x, y = (profile.points[k] - back * direction(heading)).tolist()
+    return Pose(x, y, float(np.degrees(heading)))
 
 
 def _clear(clamp: ClampedTube, fingers: int) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 
 from profiletool.joints.windows import SeamChoice, off_mesh, slit_rows
 from profiletool.records.design import TOWARD_DEG, Design
+from profiletool.records.seal import proven
 from profiletool.template.drawing import (
     RULER_MM,
     Box,
@@ -171,7 +172,7 @@ def title_lines(design: Design, what: str) -> list[str]:
     lines = [f"{what}: {_shortened(name, TITLE_MM, NAME_MM)}"]
     if not design.feasible:
         lines.append("INFEASIBLE")
-    if not design.verified:
+    if not proven(design):
         lines.append("NOT VERIFIED")
     return lines
 

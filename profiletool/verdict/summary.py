@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from profiletool.records.built import Built
 from profiletool.records.design import Design, Joint, Misfit
+from profiletool.records.seal import proven
 
 
 def joint_table(design: Design) -> str:
@@ -11,7 +12,7 @@ def joint_table(design: Design) -> str:
     extra = [("formula deg", "theta_formula_deg")]
     if any(j.theta_response_deg is not None for j in design.joints):
         extra.append(("response deg", "theta_response_deg"))
-    if design.verified:
+    if proven(design):
         extra.append(("FE deg", "theta_fe_deg"))
     lines = [
         f"{design.source.file}: {_counted(len(design.joints))} at {design.pressure_bar:.2f} bar, "
@@ -63,7 +64,7 @@ def summary(design: Design) -> str:
     """Joints, distances, verdict and notes of a design as text."""
     verdict = (
         "feasible" if design.feasible else "INFEASIBLE",
-        "verified by finite elements" if design.verified else "NOT VERIFIED",
+        "verified by finite elements" if proven(design) else "NOT VERIFIED",
     )
     notes = [f"note: {text}" for text in design.warnings]
     return joint_table(design) + "\n".join((", ".join(verdict), *notes))
@@ -79,7 +80,7 @@ def _built_short(design: Design) -> str:
 def headline(design: Design) -> str:
     """Say in one line what a design is."""
     fit = design.fit.fe or design.fit.response or design.fit.formula
-    verified = "verified" if design.verified else "NOT VERIFIED"
+    verified = "verified" if proven(design) else "NOT VERIFIED"
     return (
         f"{design.source.file}: {_counted(len(design.joints))} at {design.pressure_bar:.2f} bar, "
         f"{fit.rms_mm:.2f} mm RMS off the profile{_built_short(design)}, "

@@ -67,7 +67,7 @@ def test_the_clamps_edge_is_marked_from_the_notch_to_the_end_edge(build, wish):
     sheet = build_sheet(build(), wish)
     marks = [x.points for x in sheet.drawing.drawn if x.layer == "MARK" and len(x.points) == 2]
     edge = [p[:, 1] for p in marks if np.all(p[:, 0] == 0.0) and p.min() > 0.0 - 1e-9]
-    inside = [y for y in edge if 0 < y.min() and y.max() < sheet.outline[:, 1].max()]
+    inside = [y for y in edge if y.min() > 0 and y.max() < sheet.outline[:, 1].max()]
     assert sum(np.ptp(y) for y in inside) > sheet.outline[:, 1].max() - 7.0
     assert "x = 0: edge of the clamp" in {text.text for text in sheet.drawing.texts}
 

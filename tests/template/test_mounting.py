@@ -144,7 +144,9 @@ def test_title_says_what_is_wrong():
 
 
 def test_a_tube_that_bends_into_the_palm_is_warned_of():
-    assert "runs into the palm" in said(mounting_drawing(*case(wave(), closed=False, away=True, root=5.0)))
+    assert "runs into the palm" in said(
+        mounting_drawing(*case(wave(), closed=False, away=True, root=5.0))
+    )
     assert "runs into the palm" not in said(drawing_of("one on a line"))
 
 

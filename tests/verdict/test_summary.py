@@ -10,6 +10,7 @@ import pytest
 
 from profiletool.files.design_json import load_design
 from profiletool.records.design import Design
+from profiletool.records.seal import sealed
 from profiletool.report.tables import joint_table as html_table
 from profiletool.verdict.summary import joint_table
 
@@ -22,7 +23,7 @@ def near(samples: Path) -> Design:
     second, third = joints[1:3]
     centre = third.centre_mm - 0.5 * (second.openF_mm + third.openF_mm) - 3.0
     joints[1] = replace(second, centre_mm=centre)
-    return replace(design, joints=tuple(joints), verified=True)
+    return sealed(replace(design, joints=tuple(joints), verified=True))
 
 
 def test_uncertain_angles_are_marked(near: Design) -> None:
