@@ -126,11 +126,14 @@ def _template_pdf(output: TemplateOutput) -> bytes:
 
 def _design_shapes(output: DesignOutput) -> bytes:
     result = output.result
-    lines = {"target": result.subject.profile.points, "formula": result.shape.facing}
+    profile = result.subject.profile
+    lines = {"target": profile.points, "formula": result.shape.facing}
     if result.plan.by != "formula":
         lines["response"] = result.plan.bent.facing
     if result.check is not None and result.check.shape is not None:
         lines["fe"] = result.check.shape.facing
+    if profile.outline is not None:
+        lines["outline"] = profile.outline
     return shape_csv(lines)
 
 

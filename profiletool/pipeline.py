@@ -8,11 +8,13 @@ from dataclasses import dataclass, replace
 
 from formula.theta import Formula
 from profiletool.files.formula import read_formula
+from profiletool.joints.again import plan_again
 from profiletool.joints.closest import target_points
 from profiletool.joints.optimal_method import optimal_plan
 from profiletool.joints.paper_method import paper_plan
 from profiletool.records.design import Design
-from profiletool.records.making import check_request
+from profiletool.records.making import check_request, request_again
+from profiletool.records.picture import Scale
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request
 from profiletool.records.seal import sealed
@@ -101,6 +103,46 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
         second = _attempt(lower, subject, formula, say, progress)
         attempt = second if second.design.verified else attempt
     return _judged(_with_errors(replace(attempt, request=request)))
+
+
+def run_again(
+    design: Design,
+    profile: Profile,
+    formula: Formula,
+    say: Callable[[str], None],
+    progress: Progress | None = None,
+    *,
+    refine: bool = False,
+) -> Result:
+    """Take a design up again: verify it as it is, or correct it first, and judge it anew.
+
+    Parameters
+    ----------
+    design : Design
+        Its joints by their places; the rest follows from them.
+    profile : Profile
+    formula : Formula
+        For the angles of the table.
+    say, progress : callable
+        As for `run`.
+    refine : bool
+        Whether finite elements correct the joints, in whole threads and millimetres.
+
+    Raises
+    ------
+    ProfiletoolError
+        Such as UnreadableInput where a joint bends out of the plane.
+    """
+    request = request_again(design, profile, refine)
+    check_request(request)
+    source = design.source
+    subject = Subject(None, None, Scale(source.mm_per_px or 1.0, "vector"), None, profile)
+    forward = FeForwardModel(request.tube, request.model) if refine else None
+    plan = plan_again(design, request, profile, formula, say, forward)
+    attempt = attempt_of(request, subject, formula, plan)
+    attempt = replace(attempt, design=replace(attempt.design, source=source, method=design.method))
+    checked = _verified(attempt.design, profile, say, progress)
+    return _judged(_with_errors(holding(replace(attempt, design=checked.design, check=checked))))
 
 
 def _attempt(

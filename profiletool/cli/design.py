@@ -86,13 +86,13 @@ def design(
         as_json = delivery.as_json
         text = files["design.json"].decode() if as_json else joint_table(result.design)
         typer.echo(text, nl=False)
-        _conclude(result, folder, say)
+        conclude(result, folder, say)
 
 
 with_signature(design, parameters_of(design), parameters_of_rows(DESIGN), parameters_of(Delivery))
 
 
-def _conclude(result: Result, folder: Path, say: Callable[[str], None]) -> None:
+def conclude(result: Result, folder: Path, say: Callable[[str], None]) -> None:
     """Print the notes, and end with the exit code of what is wrong with the design.
 
     Raises

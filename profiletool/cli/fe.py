@@ -11,7 +11,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from profiletool.cli.console import Debug, Json, Quiet, exit_codes, progress_bar, speaker
+from profiletool.cli.console import (
+    Debug,
+    DesignFile,
+    Json,
+    Quiet,
+    changed_notes,
+    design_file,
+    exit_codes,
+    progress_bar,
+    speaker,
+)
 from profiletool.cli.rows import parameters_of, parameters_of_rows, with_signature
 from profiletool.cli.samples import SampleOptions, sampled, taken
 from profiletool.errors import Infeasible, NotVerified, UnreadableInput, UsageError
@@ -117,7 +127,7 @@ def finger(
 
 
 def verify(
-    file: Annotated[Path, typer.Argument(metavar="DESIGN.json", help="A design.json.")],
+    file: DesignFile,
     pressure: Annotated[
         float | None,
         typer.Option(help="Highest pressure, bar (default: the design's own); ten equal steps."),
@@ -151,8 +161,10 @@ def verify(
         from profiletool.subject.recall import target_of
         from profiletool.verify.run import run_design
 
-        asked = taken(options)
+        asked, file = taken(options), design_file(file)
         design = load_design(file)
+        for note in changed_notes(design):
+            speaker(quiet)(f"note: {note}")
         design = replace(design, model=model_of(options, design.model))
         most = design.pressure_bar if pressure is None else pressure
         _check_run(most, None, force)

@@ -7,7 +7,7 @@ from typing import Annotated, cast
 
 import typer
 
-from profiletool.cli import derive, design, fe, table, template, trim
+from profiletool.cli import again, derive, design, fe, table, template, trim
 from profiletool.errors import UsageError
 from profiletool.records.version import VERSION
 
@@ -77,6 +77,9 @@ for _command, _example in (
     (table.table, "profiletool table --openF 6,8,10 --csv"),
     (table.assign, "profiletool assign --openF 8,8,8,8,6,10 --theta 30,30,30,25,20,45"),
     (trim.trim, "profiletool trim bulb_design/design.json --tip -22.4,-96.6 --at 1.67"),
+    (again.edit, "profiletool edit bulb_design --joint 3 --alpha 132 --move 1 --out other"),
+    (again.report, "profiletool report bulb_design/design.json --out whole"),
+    (again.refine, "profiletool refine bulb_design/design.json --out better"),
     (template.template, "profiletool template bulb_design/design.json --variant strip"),
     (template.sheet, "profiletool sheet --paper letter --out sheet.pdf"),
 ):

@@ -7,7 +7,15 @@ from typing import Annotated, Literal
 
 import typer
 
-from profiletool.cli.console import Debug, Quiet, exit_codes, speaker
+from profiletool.cli.console import (
+    Debug,
+    DesignFile,
+    Quiet,
+    changed_notes,
+    design_file,
+    exit_codes,
+    speaker,
+)
 
 Paper = Annotated[
     Literal["a4", "letter"], typer.Option(help="Pages of the PDFs; larger pieces are tiled.")
@@ -19,7 +27,7 @@ Date = Annotated[str, typer.Option(help="Date to print on the template, in any f
 
 
 def template(
-    file: Annotated[Path, typer.Argument(metavar="DESIGN.json", help="A design.json.")],
+    file: DesignFile,
     variant: Annotated[
         Literal["gauze", "sleeve", "strip"],
         typer.Option(
@@ -35,7 +43,7 @@ def template(
         typer.Option(help="Version of the DXF; R12 knows no units: tell its reader mm."),
     ] = "R2000",
     out: Annotated[
-        Path | None, typer.Option(help="Output folder (default: name + _template).")
+        Path | None, typer.Option(help="Output folder (default: the object's name + _template).")
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier template.")] = False,
     quiet: Quiet = False,
@@ -49,14 +57,17 @@ def template(
         from profiletool.template.kerf import check_kerf
         from profiletool.template.kinds import Wish
 
-        folder = out or Path(f"{file.stem}_template")
+        made = load_design(design_file(file))
+        folder = out or Path(f"{Path(made.source.file).stem}_template")
         write.check_free(folder, force)
-        made = load_design(file)
+        say = speaker(quiet)
+        for note in changed_notes(made):
+            say(f"note: {note}")
         check_kerf(kerf, made.gauze.pitch_mm, made.gauze.thread_mm)
         files = outputs.template_files(made, Wish(variant, kerf, date), paper, dxf)
         files["design.json"] = to_json(made).encode()
         write.write_folder(folder, files, force)
-        speaker(quiet)(f"written: {folder}")
+        say(f"written: {folder}")
 
 
 def sheet(

@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from dataclasses import asdict, replace
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from formula.rubber import read_rubber
 from profiletool.errors import UnreadableInput, UsageError
@@ -17,12 +18,15 @@ from profiletool.records.model import check_model
 from profiletool.records.rubber import law_of
 from profiletool.records.seal import proven, values_of
 
+if TYPE_CHECKING:
+    from pydantic import TypeAdapter
+
 SCHEMA = "profiletool.design/3"
 # Older files have no seal, those of the first no `built`, `trim` and `model`.
 _READ = (SCHEMA, "profiletool.design/2", "profiletool.design/1")
 _SAME_MM = 0.001  # facts that are stored twice agree to this
 EDITED = (
-    "NOT VERIFIED: {} since finite elements verified it; the command verify or report does again"
+    "NOT VERIFIED: {} since finite elements verified it; the command report verifies it anew"
 )
 _MOST_BYTES = 5_000_000
 
@@ -41,7 +45,7 @@ def from_json(text: str | bytes, file: str) -> Design:
     UnreadableInput
         Naming the file and the first field that is missing, unknown or makes no sense.
     """
-    from pydantic import TypeAdapter, ValidationError  # heavy, and writing does not need it
+    from pydantic import ValidationError  # heavy, and writing does not need it
 
     try:
         tree = json.loads(
@@ -52,7 +56,7 @@ def from_json(text: str | bytes, file: str) -> Design:
     if not isinstance(tree, dict) or tree.get("schema") not in _READ:
         raise UnreadableInput(f'{file} is no design: its "schema" is not "{SCHEMA}"')
     try:
-        design = TypeAdapter(Design).validate_python(_with_law(tree, file))
+        design = _schema().validate_python(_with_law(tree, file))
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])
@@ -61,6 +65,13 @@ def from_json(text: str | bytes, file: str) -> Design:
         raise UnreadableInput(f"{file}: {path}: no key of a design")
     _check(design, file)
     return _judged(design, str(tree["schema"]))
+
+
+@cache
+def _schema() -> TypeAdapter[Design]:
+    from pydantic import TypeAdapter
+
+    return TypeAdapter(Design)
 
 
 def load_design(path: Path | str) -> Design:
