@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 
 from formula.theta import Formula
 from profiletool.files.formula import read_formula
-from profiletool.joints.again import plan_again
+from profiletool.joints.again import edited, plan_again
 from profiletool.joints.closest import target_points
 from profiletool.joints.optimal_method import optimal_plan
 from profiletool.joints.paper_method import paper_plan
 from profiletool.records.design import Design
+from profiletool.records.edit import Edit
 from profiletool.records.making import check_request, request_again
 from profiletool.records.picture import Scale
 from profiletool.records.profile import Profile
@@ -112,9 +113,10 @@ def run_again(
     say: Callable[[str], None],
     progress: Progress | None = None,
     *,
+    edit: Edit | None = None,
     refine: bool = False,
 ) -> Result:
-    """Take a design up again: verify it as it is, or correct it first, and judge it anew.
+    """Take a design up again: change or correct it where asked, verify it and judge it anew.
 
     Parameters
     ----------
@@ -125,14 +127,18 @@ def run_again(
         For the angles of the table.
     say, progress : callable
         As for `run`.
+    edit : Edit, optional
+        A change by hand.
     refine : bool
         Whether finite elements correct the joints, in whole threads and millimetres.
 
     Raises
     ------
     ProfiletoolError
-        Such as UnreadableInput where a joint bends out of the plane.
+        Such as UsageError for a change that cannot be built, and UnreadableInput where a joint
+        bends out of the plane.
     """
+    design = design if edit is None else edited(design, edit)
     request = request_again(design, profile, refine)
     check_request(request)
     source = design.source

@@ -23,7 +23,7 @@ from profiletool.cli.rows import parameters_of, with_signature
 from profiletool.cli.template import Paper
 
 if TYPE_CHECKING:
-    from profiletool.joints.again import Edit
+    from profiletool.records.edit import Edit
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def edit(
     """Change a design by hand; finite elements verify it anew, and every file is written."""
     asked = Again(**options)
     with exit_codes(asked.debug):
-        from profiletool.joints.again import Edit
+        from profiletool.records.edit import Edit
 
         change = Edit(joint, alpha, openF, move, pressure)
         _again(file, asked, "edited", change=change)
@@ -87,7 +87,6 @@ def _again(
     from profiletool.files import write
     from profiletool.files.design_json import load_design
     from profiletool.files.formula import read_formula
-    from profiletool.joints.again import edited
     from profiletool.subject.recall import profile_of
     from profiletool.verdict.summary import joint_table
 
@@ -96,10 +95,11 @@ def _again(
     folder = asked.out or Path(f"{Path(design.source.file).stem}_{name}")
     write.check_free(folder, asked.force)
     profile = profile_of(design, file)
-    design = design if change is None else edited(design, change)
     formula = read_formula(asked.formula)
     with progress_bar("finite elements", asked.quiet) as progress:
-        result = pipeline.run_again(design, profile, formula, say, progress, refine=refined)
+        result = pipeline.run_again(
+            design, profile, formula, say, progress, edit=change, refine=refined
+        )
     files = outputs.files_of(result, paper=asked.paper)
     write.write_folder(folder, files, asked.force)
     text = files["design.json"].decode() if asked.as_json else joint_table(result.design)

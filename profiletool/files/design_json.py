@@ -25,9 +25,7 @@ SCHEMA = "profiletool.design/3"
 # Older files have no seal, those of the first no `built`, `trim` and `model`.
 _READ = (SCHEMA, "profiletool.design/2", "profiletool.design/1")
 _SAME_MM = 0.001  # facts that are stored twice agree to this
-EDITED = (
-    "NOT VERIFIED: {} since finite elements verified it; the command report verifies it anew"
-)
+EDITED = "NOT VERIFIED: {} since finite elements verified it; the command report verifies it anew"
 _MOST_BYTES = 5_000_000
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any, TypeVar
 
@@ -20,32 +20,12 @@ from profiletool.joints.layout import Layout
 from profiletool.joints.optimal_method import angles, corrected, model_of, places_of
 from profiletool.joints.plan import Plan
 from profiletool.records.design import Design, Joint
+from profiletool.records.edit import Edit
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request
 from profiletool.records.units import BAR_PER_MPA
 
 S = TypeVar("S")
-
-
-@dataclass(frozen=True)
-class Edit:
-    """A change by hand; None leaves a number as it is.
-
-    Attributes
-    ----------
-    joint : int or None
-        Its number; None where the pressure alone is changed.
-    alpha_deg, openF_mm : float or None
-    move_mm : float or None
-        By which the joint moves along the tube, toward the closed end; its neighbours stay.
-    pressure_bar : float or None
-    """
-
-    joint: int | None = None
-    alpha_deg: float | None = None
-    openF_mm: float | None = None
-    move_mm: float | None = None
-    pressure_bar: float | None = None
 
 
 def edited(design: Design, edit: Edit) -> Design:

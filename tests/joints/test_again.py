@@ -11,8 +11,9 @@ import pytest
 from formula import load_formula
 from profiletool.errors import UsageError
 from profiletool.files.design_json import load_design
-from profiletool.joints.again import Edit, edited, plan_again, posed_of
+from profiletool.joints.again import edited, plan_again, posed_of
 from profiletool.records.design import Design
+from profiletool.records.edit import Edit
 from profiletool.records.making import request_again
 from profiletool.subject.recall import profile_along
 from profiletool.verify.recompute import recomputed
@@ -46,7 +47,7 @@ def test_what_is_given_is_changed_and_nothing_else(design: Design) -> None:
         (Edit(1, openF_mm=0.0), "whole meshes"),
         (Edit(2, move_mm=12.0), "joints 2 and 3 would overlap by 1 mm"),
         (Edit(1, move_mm=-6.0), "into the clamp"),
-        (Edit(6, move_mm=5.0), "beyond the tube's closed end"),
+        (Edit(6, move_mm=8.0), "beyond the tube's closed end"),
         (Edit(pressure_bar=-1.0), "`pressure_bar` must be above 0"),
     ],
 )
