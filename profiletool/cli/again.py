@@ -11,6 +11,7 @@ import typer
 from profiletool.cli.console import (
     Debug,
     DesignFile,
+    Force,
     FormulaFile,
     Quiet,
     design_file,
@@ -35,7 +36,7 @@ class Again:
     out: Annotated[
         Path | None, typer.Option(help="Output folder (default: the object's name + the command).")
     ] = None
-    force: Annotated[bool, typer.Option("--force", help="Replace an earlier folder.")] = False
+    force: Force = False
     as_json: Annotated[bool, typer.Option("--json", help="Print design.json on stdout.")] = False
     quiet: Quiet = False
     debug: Debug = False

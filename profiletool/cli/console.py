@@ -19,9 +19,22 @@ from profiletool.records.options import in_flags
 if TYPE_CHECKING:
     from profiletool.records.design import Design
 
-Debug = Annotated[bool, typer.Option("--debug", help="Show the full traceback of an error.")]
-Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
-Quiet = Annotated[bool, typer.Option("--quiet", help="No progress on stderr.")]
+OUTPUT = "Output"  # panel of the help
+KEPT = "stopped: nothing was written"
+
+Debug = Annotated[
+    bool,
+    typer.Option("--debug", help="Show the full traceback of an error.", rich_help_panel=OUTPUT),
+]
+Json = Annotated[
+    bool, typer.Option("--json", help="Print the result as JSON.", rich_help_panel=OUTPUT)
+]
+Quiet = Annotated[
+    bool, typer.Option("--quiet", help="No progress on stderr.", rich_help_panel=OUTPUT)
+]
+Force = Annotated[
+    bool, typer.Option("--force", help="Replace an earlier result.", rich_help_panel=OUTPUT)
+]
 DesignFile = Annotated[
     Path, typer.Argument(metavar="DESIGN.json", help="A design.json, or the folder that holds one.")
 ]
@@ -39,10 +52,13 @@ Extrapolate = Annotated[
 
 
 @contextmanager
-def exit_codes(debug: bool) -> Iterator[None]:
-    """Turn our errors into one line on stderr and their exit code."""
+def exit_codes(debug: bool, kept: str = KEPT) -> Iterator[None]:
+    """Turn our errors into one line on stderr and their exit code; ``kept`` is for Ctrl-C."""
     try:
         yield
+    except KeyboardInterrupt:
+        typer.echo(kept, err=True)
+        raise typer.Exit(130) from None
     except ProfiletoolError as error:
         if debug:
             traceback.print_exc()

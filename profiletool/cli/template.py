@@ -8,8 +8,10 @@ from typing import Annotated, Literal
 import typer
 
 from profiletool.cli.console import (
+    OUTPUT,
     Debug,
     DesignFile,
+    Force,
     Quiet,
     changed_notes,
     design_file,
@@ -18,12 +20,20 @@ from profiletool.cli.console import (
 )
 
 Paper = Annotated[
-    Literal["a4", "letter"], typer.Option(help="Pages of the PDFs; larger pieces are tiled.")
+    Literal["a4", "letter"],
+    typer.Option(help="Pages of the PDFs; larger pieces are tiled.", rich_help_panel=OUTPUT),
 ]
 Kerf = Annotated[
-    float, typer.Option(help="Width that the beam or blade takes away, mm: lines move by half.")
+    float,
+    typer.Option(
+        help="Width that the beam or blade takes away, mm: lines move by half.",
+        rich_help_panel=OUTPUT,
+    ),
 ]
-Date = Annotated[str, typer.Option(help="Date to print on the template, in any form.")]
+Date = Annotated[
+    str,
+    typer.Option(help="Date to print on the template, in any form.", rich_help_panel=OUTPUT),
+]
 
 
 def template(
@@ -45,7 +55,7 @@ def template(
     out: Annotated[
         Path | None, typer.Option(help="Output folder (default: the object's name + _template).")
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace an earlier template.")] = False,
+    force: Force = False,
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
@@ -73,7 +83,7 @@ def template(
 def sheet(
     paper: Paper = "a4",
     out: Annotated[Path | None, typer.Option(help="File (default: sheet_ + paper + .pdf).")] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace an earlier file.")] = False,
+    force: Force = False,
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 from profiletool.errors import UsageError
 from profiletool.records.built import BuildErrors, build_errors
-from profiletool.records.design import Design
 from profiletool.records.model import ModelInputs, check_model
 from profiletool.records.options import DESIGN, MODEL, Option
-from profiletool.records.profile import Profile
 from profiletool.records.request import Look, Request, ScaleRequest, TubeSpec
 
 if TYPE_CHECKING:
     from formula.theta import Formula
+    from profiletool.records.design import Design
+    from profiletool.records.profile import Profile
 
 
 def request_of(file: Path, values: Mapping[str, Any], formula: Formula | None = None) -> Request:

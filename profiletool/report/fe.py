@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
+from formula.theta import Formula, theta_deg
 from profiletool.joints.misfit import misfit_to
 from profiletool.records.design import Design, Misfit
 from profiletool.records.fe import Verification
@@ -168,3 +169,28 @@ def _reached(found: Verification) -> list[float | None]:
 
 def _short(value: float) -> float:
     return float(f"{value:.{_SIGNIFICANT}g}")
+
+
+def formula_json(
+    found: Verification, formula: Formula | None, cuts: Sequence[tuple[float, float]]
+) -> dict[str, Any]:
+    """Make the entry of fe.json for a formula's angles, of cuts (openF mm, alpha deg) in order."""
+    if formula is None:
+        return {}
+    theta = [
+        [round(float(theta_deg(formula, alpha, openF, bar)), _ANGLE_DECIMALS)
+         for bar in found.pressures_bar]
+        for openF, alpha in cuts
+    ]  # fmt: skip
+    return {"formula": {"name": formula.name, "theta_deg": theta}}
+
+
+def formula_text(
+    found: Verification, formula: Formula | None, cuts: Sequence[tuple[float, float]]
+) -> str:
+    """Say what a formula makes of the last state."""
+    if formula is None:
+        return ""
+    bar = found.last.pressure_bar
+    said = (f"{float(theta_deg(formula, alpha, openF, bar)):.1f}" for openF, alpha in cuts)
+    return f'by the formula "{formula.name}" at {bar:.2f} bar: {", ".join(said)} deg\n'

@@ -40,14 +40,7 @@ def test_a_changed_file_is_whole_again_after_report(tmp_path: Path) -> None:
     assert again["source"] == tree["source"]
     assert call("template", "whole", "--out", "made").stderr.startswith("written")
 
-    first = tree["joints"][0]
-    result = call("edit", folder, "--joint", 1, "--alpha", first["alpha_closed_deg"] - 5, "--json")
-    assert result.exit_code in (0, 6), result.stderr
-    edited = json.loads(result.stdout)
-    assert edited["verified"]
-    assert edited["joints"][0]["alpha_closed_deg"] == first["alpha_closed_deg"] - 5
-    assert edited["fit"]["fe"] != tree["fit"]["fe"]
-    result = call("refine", "arc_edited", "--json")
+    result = call("refine", "whole", "--out", "better", "--json")
     assert result.exit_code in (0, 6), result.stderr
     refined = json.loads(result.stdout)
     assert refined["verified"]
