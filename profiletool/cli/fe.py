@@ -87,7 +87,7 @@ def joint(
         from profiletool import outputs
         from profiletool.files import write
         from profiletool.report.fe import fe_json, fe_text, formula_json, formula_text
-        from profiletool.verify.run import DOWN, LYING, inflate, pressures_to
+        from profiletool.verify.run import DOWN, LYING, breaking, inflate, pressures_to
         from profiletool.verify.tube import joint_actuator
 
         known = _formula(formula)
@@ -95,6 +95,7 @@ def joint(
         with failures(UsageError), bar(pressure, quiet) as progress:
             actuator = joint_actuator(openF, alpha, alpha_center, spec, model)
             run = inflate(actuator, pressures_to(pressure), LYING, DOWN, progress=progress)
+        run = breaking(run, spec.rubber)
         found = run.verification
         what = (
             f"one joint: openF {openF:g} mm, alpha_closed {alpha:g} deg, "
@@ -137,7 +138,7 @@ def finger(
             ranges_json,
             ranges_text,
         )
-        from profiletool.verify.run import DOWN, LYING, inflate, pressures_to
+        from profiletool.verify.run import DOWN, LYING, breaking, inflate, pressures_to
         from profiletool.verify.tube import FINGER, finger_actuator
 
         known = _formula(formula)
@@ -145,6 +146,7 @@ def finger(
         with failures(UsageError), bar(pressure, quiet) as progress:
             asked = pressures_to(pressure, 0.1)
             run = inflate(finger_actuator(model, spec), asked, LYING, DOWN, progress=progress)
+        run = breaking(run, spec.rubber)
         found = run.verification
         more = ranges_json(found) | model_json(model) | formula_json(found, known, FINGER)
         told = fe_json(found, more)

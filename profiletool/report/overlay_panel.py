@@ -50,11 +50,10 @@ def _status(design: Design) -> list[tuple[str, str]]:
 def _facts(design: Design) -> list[str]:
     tube, source, fit = design.tube, design.source, design.fit
     scale = "" if source.mm_per_px is None else f"  ({scale_text(source)})"
-    off = [("formula off the profile", fit.formula)]
+    off = [] if fit.fe is None else [("FE off the profile", fit.fe)]
     if fit.response is not None:
         off.append(("joint response off the profile", fit.response))
-    if fit.fe is not None:
-        off.append(("FE off the profile", fit.fe))
+    off.append(("formula off the profile", fit.formula))
     return [
         f"operating pressure {design.pressure_bar:.2f} bar",
         f"tube {tube.outer_diameter_mm:g} x {tube.wall_mm:g} mm, {tube.length_mm:.1f} mm long, "
@@ -81,8 +80,8 @@ def _draw_table(axes: Any, design: Design, y: float) -> float:
         cells = (
             f"{joint.number}", f"{joint.F_mm:.1f}", f"{joint.openF_mm:g}",
             f"{joint.alpha_closed_deg:.4g}", f"{joint.alpha_center_deg:g}",
-            *((f"{joint.theta_formula_deg:.1f}",) if proven(design) else ()),
-            f"{best_theta_deg(joint):.1f}",
+            *((f"{joint.signed(joint.theta_formula_deg):.1f}",) if proven(design) else ()),
+            f"{joint.signed(best_theta_deg(joint)):.1f}",
         )  # fmt: skip
         for x, cell in zip(columns, cells, strict=True):
             axes.text(x, y, cell, fontsize=10, color=INK, ha="center", va="center")

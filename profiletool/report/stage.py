@@ -95,6 +95,7 @@ def legend(scene: Scene, film: Film, *, by_fe: bool) -> Markup:
         rows.append((f"bent {_colour(scene, False)}", told))
     if scene.band is not None:
         rows.append(("band", "95 % of builds, pressure set on each"))
+    rows.append((f"window {_colour(scene, by_fe)}", "cuts, with the joints' numbers"))
     rows.append(("rest", "tube at rest"))
     rows.append(("clamped", "clamp"))
     items = (tag("li", _key(class_), said) for class_, said in rows)
@@ -263,7 +264,8 @@ def _scale_bar(frame: StageFrame) -> Iterator[Markup]:
 
 def _key(class_: str) -> Markup:
     """Draw a piece of a line, or of the clamp, as it is drawn on the stage."""
-    parts = [_line(class_, "M1,6H27")]
+    drawn = "M2,1H26V11H2Z" if class_.startswith("window") else "M1,6H27"
+    parts = [_line(class_, drawn)]
     if class_ == "clamped":
         parts.append(tag("g", _line("hatched", "M0.3,2H9V4H0.3Z"), transform="scale(3)"))
     return tag("svg", *parts, viewBox="0 0 28 12", aria_hidden="true")

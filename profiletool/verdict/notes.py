@@ -19,12 +19,13 @@ from profiletool.records.fe import FeState
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
 from profiletool.records.request import TubeSpec
+from profiletool.records.rubber import breaking_stretch
 from profiletool.subject.find import drawing_notes
 from profiletool.template.mounted import mounted_of, mounting_warnings
 from profiletool.verdict.draft import Draft
 from profiletool.verdict.missed import Missed
 from profiletool.verdict.model import model_notes
-from profiletool.verify.cautions import BREAKS, strained, uncertain
+from profiletool.verify.cautions import strained, uncertain
 from profiletool.verify.check import Check
 
 _FORMULA_LOW_ABOVE_BAR = 1.2
@@ -157,11 +158,13 @@ def shape_warnings(shape: Shape, profile: Profile, depth_mm: float) -> Iterator[
 def wear(state: FeState, design: Design) -> Iterator[str]:
     """Say what strains the tube at its operating pressure, by FE."""
     worst = max(design.joints, key=lambda joint: joint.stretch_fe or 0.0)
+    breaks = breaking_stretch(design.tube.rubber)
+    limit = "its data sheet tells where it breaks" if breaks is None else f"breaks at {breaks:g}"
     yield (
         f"the rubber is stretched most at joint {worst.number}: {worst.stretch_fe:.1f} times "
-        f"(silicone breaks at {BREAKS:g} times)"
+        f"({limit})"
     )
-    yield from strained(state)
+    yield from strained(state, breaks)
     if state.slack_share > _SLACK_SHARE:
         yield (
             f"axial threads are slack on {100.0 * state.slack_share:.0f} % of the wrapped surface: "

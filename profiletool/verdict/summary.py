@@ -22,24 +22,25 @@ def joint_table(design: Design) -> str:
     ]
     lines += [
         f"{j.number:5d}  {j.F_mm:6.1f}  {j.openF_mm:8g}  {j.alpha_closed_deg:16.4g}  "
-        f"{j.alpha_center_deg:16g}  {j.theta_target_deg:9.1f}"
+        f"{j.alpha_center_deg:16g}  {j.signed(j.theta_target_deg):9.1f}"
         + "".join(f"  {_angle(design, j, name):>{len(head)}}" for head, name in extra)
         for j in design.joints
     ]
-    lines.append(f"by the formula off the profile:        {off_text(design.fit.formula)}")
-    if design.fit.response is not None:
-        lines.append(f"by the joint response off the profile: {off_text(design.fit.response)}")
+    lines.append("theta is positive toward the object, negative away from it")
     if design.fit.fe is not None:
         lines.append(f"by FE off the profile:                 {off_text(design.fit.fe)}")
     if design.built is not None:
         lines.append(f"built by hand, off the profile:        {built_text(design.built)}")
+    if design.fit.response is not None:
+        lines.append(f"by the joint response off the profile: {off_text(design.fit.response)}")
+    lines.append(f"by the formula off the profile:        {off_text(design.fit.formula)}")
     return "\n".join(lines) + "\n"
 
 
 def _angle(design: Design, joint: Joint, name: str) -> str:
     """Give an angle of a joint, marked where finite elements cannot tell it for certain."""
     doubtful = name == "theta_fe_deg" and joint.number in design.theta_uncertain
-    return f"{'~' if doubtful else ''}{getattr(joint, name):.1f}"
+    return f"{'~' if doubtful else ''}{joint.signed(getattr(joint, name)):.1f}"
 
 
 def off_text(misfit: Misfit) -> str:
