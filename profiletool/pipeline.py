@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from formula.theta import Formula
-from profiletool.files.formula import read_formula
+from profiletool.files.formula import formula_for
 from profiletool.joints.again import edited, plan_again
 from profiletool.joints.closest import target_points
 from profiletool.joints.optimal_method import optimal_plan
@@ -112,7 +112,7 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
         Of the class whose exit code fits.
     """
     check_request(request)
-    formula = read_formula(request.formula, request.extrapolate)
+    formula = formula_for(request)
     progress = progress or _silent
     progress(0.0)
     subject = find_subject(request, say)

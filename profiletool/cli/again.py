@@ -87,7 +87,7 @@ def _again(
     from profiletool import outputs, pipeline
     from profiletool.files import write
     from profiletool.files.design_json import load_design
-    from profiletool.files.formula import read_formula
+    from profiletool.files.formula import named_formula, read_formula
     from profiletool.subject.recall import profile_of
     from profiletool.verdict.summary import joint_table
 
@@ -96,7 +96,8 @@ def _again(
     folder = asked.out or Path(f"{Path(design.source.file).stem}_{name}")
     write.check_free(folder, asked.force)
     profile = profile_of(design, file)
-    formula = read_formula(asked.formula)
+    other = asked.formula
+    formula = named_formula(design.formula.name) if other is None else read_formula(other)
     with progress_bar("finite elements", asked.quiet) as progress:
         result = pipeline.run_again(
             design, profile, formula, say, progress, edit=change, refine=refined

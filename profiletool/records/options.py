@@ -166,8 +166,10 @@ DESIGN = (
     ),
     Option("--max-length", "tube.max_length_mm", _MM, "Longest tube, mm.", above=0.0, main=True),
     Option(
-        "--formula", "formula", _FILE, "A formula file, or by name paper (default) or fe.",
-        absent="paper",
+        "--formula", "formula", _FILE,
+        "A formula file, or by name paper or fe (default: fe, ours for the paper's tube, with "
+        "--method optimal; paper with --method paper).",
+        absent="the method's",
     ),
     Option(
         "--extrapolate", "extrapolate", _YES,

@@ -49,6 +49,11 @@ def law_of(rubber: RubberLaw | None, nu: float | None = None) -> Law:
     return made
 
 
+def usual_rubber(rubber: RubberLaw | None) -> bool:
+    """Whether a rubber is the paper's silicone."""
+    return rubber is None or rubber.name == "paper"
+
+
 def breaking_stretch(rubber: RubberLaw | None) -> float | None:
     """Stretch at which a rubber breaks; None where nothing tells, and None's is the paper's."""
     return PAPER_BREAKS if rubber is None else BREAKS.get(rubber.name)

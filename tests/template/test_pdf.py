@@ -330,6 +330,6 @@ def test_lettering_that_is_searched_lies_on_its_strokes():
     data = read_text(write_pdf(drawing))
     x0, _, x1, _ = drawing.texts[0].box
     size = 5.0 / 0.718  # Helvetica's capitals
-    (scale,) = re.findall(rf"/F1 {size:.3f}\d* Tf \S+ TL 3 Tr ([\d.]+) Tz", data)
+    (scale,) = re.findall(rf"/F1 {size:.6f} Tf \S+ TL 3 Tr ([\d.]+) Tz", data)
     wide = stringWidth("Weld 7°", "Helvetica", size) * float(scale) / 100.0
     assert wide == pytest.approx(x1 - x0, abs=0.01)
