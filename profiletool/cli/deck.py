@@ -8,8 +8,8 @@ from typing import Annotated, Any, Literal
 
 import typer
 
-from profiletool.cli.console import Debug, Quiet, exit_codes, speaker
-from profiletool.cli.fe import Force, check_run, failures, fe_progress
+from profiletool.cli.console import Debug, Force, Quiet, exit_codes, speaker
+from profiletool.cli.fe import bar, check_run, failures
 from profiletool.cli.rows import parameters_of, parameters_of_rows, with_signature
 from profiletool.errors import Infeasible, NotVerified, UnreadableInput, UsageError
 from profiletool.records.making import model_of
@@ -73,7 +73,7 @@ def deck(
         most = design.pressure_bar if pressure is None else pressure
         check_run(most, None, force)
         wrong = UnreadableInput if design.feasible else Infeasible
-        with failures(wrong, f"{file}: "), fe_progress(most, quiet) as progress:
+        with failures(wrong, f"{file}: "), bar(most, quiet) as progress:
             made = make_deck_output(
                 design, asked.code, asked.mesh, most, solve=asked.verify, progress=progress
             )

@@ -14,7 +14,7 @@ from profiletool.bending.constant_curvature import FormulaModel
 from profiletool.bending.model import Chain, Model
 from profiletool.bending.response import Response
 from profiletool.errors import UsageError
-from profiletool.joints.bounds import PRESSURE_STEP
+from profiletool.joints.bounds import PRESSURE_STEP, Limits
 from profiletool.joints.correction.by_model import BendingForwardModel
 from profiletool.joints.correction.correct import (
     CannotBend,
@@ -70,7 +70,7 @@ def optimal_plan(
     Infeasible
         When no joints follow the profile even roughly.
     """
-    model = _model(request, formula)
+    model = model_of(request, formula)
     if request.tube.max_pressure_bar < BAR_PER_MPA * model.pressure[0]:
         raise UsageError(
             f"`max_pressure_bar` {request.tube.max_pressure_bar:g} bar is less than the "
@@ -83,7 +83,7 @@ def optimal_plan(
         layout=_layout(posed, choice, bent, model, formula),
         by=_by(model),
         bent=bent,
-        places=_places(bent, posed.chain, profile),
+        places=places_of(bent, posed.chain, profile),
         notes=notes,
         choice=choice,
         model=model,
@@ -106,7 +106,7 @@ def _standing(
 
     def by_model(choice: Choice) -> PosedChain:
         bending = BendingForwardModel(model)
-        return _corrected(request, bending, profile, model, choice, lambda line: None)
+        return corrected(request, bending, profile, model, start_of(choice), lambda line: None)
 
     def say_fe(line: str) -> None:
         say(f"finite elements, {line}")
@@ -122,7 +122,7 @@ def _standing(
         if forward is None or hopeless:
             return by_model(choice), choice, tuple(notes), hopeless
         try:
-            posed = _corrected(request, forward, profile, model, choice, say_fe)
+            posed = corrected(request, forward, profile, model, start_of(choice), say_fe)
             return posed, choice, tuple(notes), ""
         except CannotBend as problem:
             notes.append(f"the first choice of joints did not stand by FE: {problem}")
@@ -134,7 +134,8 @@ def _standing(
     return posed, choice, tuple(notes), ""
 
 
-def _model(request: Request, formula: Formula) -> Model:
+def model_of(request: Request, formula: Formula) -> Model:
+    """Model that joints are chosen by: the joint response, or the formula that the user gave."""
     spec = request.tube
     if request.formula is not None:
         return FormulaModel(formula, spec.radius_mm)
@@ -183,18 +184,24 @@ def _step_sizes(request: Request) -> StepSizes:
     )
 
 
-def _corrected(
+def start_of(choice: Choice) -> tuple[PosedChain, Limits]:
+    """Give what the correction of a choice starts from, and its bounds."""
+    return PosedChain(choice.chain, choice.pressure, choice.pose), choice.limits
+
+
+def corrected(
     request: Request,
     forward: ForwardModel[S],
     profile: Profile,
     model: Model,
-    choice: Choice,
+    start: tuple[PosedChain, Limits],
     say: Callable[[str], None],
 ) -> PosedChain:
-    """Correct a choice by a forward model, in numbers that can be built."""
-    parameters = parameters_of(choice.chain, profile, choice.limits)
-    vector = parameters.pack(PosedChain(choice.chain, choice.pressure, choice.pose))
-    corrected = correct(
+    """Correct an actuator by a forward model, in numbers that can be built."""
+    posed, limits = start
+    parameters = parameters_of(posed.chain, profile, limits)
+    vector = parameters.pack(posed)
+    found = correct(
         forward,
         model,
         parameters,
@@ -204,7 +211,7 @@ def _corrected(
         _aim(request, model),
         say,
     )
-    return corrected.best.posed
+    return found.best.posed
 
 
 def _layout(
@@ -249,7 +256,7 @@ def angles(shape: Shape, chain: Chain) -> FloatArray:
     return np.asarray(turns, dtype=float)
 
 
-def _places(shape: Shape, chain: Chain, profile: Profile) -> FloatArray:
+def places_of(shape: Shape, chain: Chain, profile: Profile) -> FloatArray:
     """Arc length of the profile's points nearest to the joints on the bent tube: (n,) mm."""
     at = points_at(chain.centre, shape.along, shape.facing)
     away = np.hypot(*np.moveaxis(profile.points[:, None] - at, -1, 0))

@@ -13,6 +13,7 @@ from pathlib import Path, PurePath
 from typing import Any
 
 from profiletool.records.built import BuildErrors
+from profiletool.records.clamp import LEAST_MM
 from profiletool.records.request import Request
 
 
@@ -166,7 +167,12 @@ DESIGN = (
     ),
     Option(
         "--root", "tube.root_mm", _ROOT,
-        "Least clamped length before the first joint's centre, mm.", above=0.0,
+        "Least length from the clamp's edge to the first joint's centre, mm.", above=0.0,
+    ),
+    Option(
+        "--clamp", "tube.clamp_mm", _MM,
+        "Tube and gauze that are held behind the clamp's edge, mm (default: one diameter).",
+        least=LEAST_MM, absent="one diameter",
     ),
     Option(
         "--pitch", "tube.pitch_mm", _MM, "Mesh pitch of the gauze, mm.", above=0.0, main=True
@@ -177,8 +183,10 @@ DESIGN = (
     ),
     Option("--max-length", "tube.max_length_mm", _MM, "Longest tube, mm.", above=0.0, main=True),
     Option(
-        "--formula", "formula", _FILE, "A formula file, or by name paper (default) or fe.",
-        absent="paper",
+        "--formula", "formula", _FILE,
+        "A formula file, or by name paper or fe (default: fe, ours for the paper's tube, with "
+        "--method optimal; paper with --method paper).",
+        absent="the method's",
     ),
     Option(
         "--extrapolate", "extrapolate", _YES,
@@ -261,7 +269,7 @@ _OTHERS = {
     "alpha_center_deg": "--alpha-center", "base": "--from", "runs": "--runs",
     "scheduler": "--scheduler", "workers": "--workers", "alpha_deg": "--alpha",
     "openF_mm": "--openF", "theta_deg": "--theta", "tip_mm": "--tip", "at_bar": "--at",
-    "angles": "--angles",
+    "angles": "--angles", "joint": "--joint", "move_mm": "--move",
 }  # fmt: skip
 FLAGS: Mapping[str, str] = {**{row.field: row.flag for row in DESIGN}, **_OTHERS}
 

@@ -46,7 +46,7 @@ def joint_table(design: Design, places: FloatArray) -> Markup:
     ]
     said = (
         f"Angles at {design.pressure_bar:.2f} bar, positive toward the object. Places are the "
-        "cuts' centres: along the tube from the clamped end, along the profile from its start."
+        "cuts' centres: along the tube from the clamp's edge, along the profile from its start."
     )
     return table(heads, rows, said)
 
@@ -55,7 +55,7 @@ def slit_table(design: Design) -> Markup:
     """Tabulate where the slits of every joint are, and what stays uncut."""
     pitch = design.gauze.pitch_mm
     found = slits(design.joints, design.tube, design.gauze)
-    heads = ("Joint", "x from the clamped end (mm)", "rows, per turn", "slits, all turns",
+    heads = ("Joint", "x from the clamp's edge (mm)", "rows, per turn", "slits, all turns",
              "threads left uncut, by turn", "on the side")  # fmt: skip
     rows = [
         (

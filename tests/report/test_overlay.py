@@ -15,6 +15,7 @@ from profiletool.bending.kinematics import deform
 from profiletool.joints.misfit import misfit
 from profiletool.pipeline import Request, run
 from profiletool.records.picture import Picture
+from profiletool.records.seal import sealed
 from profiletool.report.overlay import draw_overlay
 from profiletool.report.scene import Scene, backdrop_of, scene_of
 
@@ -71,7 +72,7 @@ def by_fe(scene: Scene) -> Scene:
     shape = deform(more, design.tube.length_mm, 10.0, design.base_pose, scene.profile.sign)
     joints = tuple(replace(j, theta_fe_deg=j.theta_formula_deg * 8.0 / 7.0) for j in design.joints)
     fit = replace(design.fit, fe=misfit(shape, scene.profile))
-    verified = replace(design, joints=joints, fit=fit, verified=True, warnings=())
+    verified = sealed(replace(design, joints=joints, fit=fit, verified=True, warnings=()))
     return replace(scene, design=verified, fe=shape)
 
 

@@ -163,7 +163,7 @@ def test_each_kind_says_what_it_is():
     for kind, words in {
         "gauze": ("Cut template: bulb.png", "weld end edge here", "Turn 2", "Roll this way"),
         "sleeve": ("Sleeve template: bulb.png", "One layer where the design has 2"),
-        "strip": ("Marking strip: bulb.png", "Prick through", "Roll gauze of 103 x 130.4 mm twice"),
+        "strip": ("Marking strip: bulb.png", "Prick through", "Roll gauze of 123 x 130.4 mm twice"),
     }.items():
         text = said(bulb(), Wish(kind))
         assert all(word in text for word in words)
