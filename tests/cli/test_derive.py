@@ -14,7 +14,6 @@ import pytest
 from fem.gauze import Gauze
 from fem.loadpath import Options
 from fem.meshsize import MeshSize
-from fem.loadpath import Options
 from fem.solver import solve
 from formula.files import campaign_of, load_formula, read_bytes
 from formula.theta import theta_deg
