@@ -193,7 +193,7 @@ def _what_to_expect(output: DeckOutput) -> str:
         "joints for the same bricks and springs (theta), and as it verifies designs, with\n"
         "a smeared gauze on a mesh of its own (design_theta); the displacement of TIP and\n"
         "the volume of the air for the same bricks and springs. Expect theta and TIP\n"
-        "within 1 %."
+        "within 1 %, on the paper's mesh within 2 %."
     )
     if len(output.expected.pressure) < len(output.deck.pressures):
         text += f"\nThis engine came to {output.reached_bar:.2f} bar."

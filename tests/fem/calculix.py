@@ -52,13 +52,20 @@ def _positions(mesh: Mesh, u: FloatArray) -> FloatArray:
 
 
 def _displacements(frd: Path, nodes: int) -> list[FloatArray]:
-    """Displacements of the first nodes, (nodes, 3), at the end of every step that was finished."""
+    """Displacements of the first nodes, (nodes, 3), at the end of every step that was finished.
+
+    CalculiX writes the last state of a step that it gives up, too; every step takes a time of 1.
+    """
     found: list[FloatArray] = []
     lines = frd.read_text().splitlines() if frd.exists() else []
     rows: list[list[float]] | None = None
+    time = 0.0
     for line in lines:
-        if line.startswith(" -4"):
-            rows = [] if line.startswith(" -4  DISP ") else None
+        if line.startswith("  100CL"):
+            time = float(line[12:24])
+        elif line.startswith(" -4"):
+            wanted = line.startswith(" -4  DISP ") and abs(time - round(time)) < 1e-6
+            rows = [] if wanted else None
         elif line.startswith(" -1") and rows is not None:
             if int(line[3:13]) <= nodes:
                 rows.append([float(line[13 + 12 * k : 25 + 12 * k]) for k in range(3)])
