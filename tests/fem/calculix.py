@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,9 +28,12 @@ class Run:
     said: str
 
 
-def run(program: str, folder: Path, deck: Deck, mesh: Mesh, limit: float) -> Run:
+def run(
+    program: str, folder: Path, deck: Deck, mesh: Mesh, limit: float,
+    write: Callable[[Deck], str] = write_calculix,
+) -> Run:  # fmt: skip
     """Let CalculiX, on one thread, go as far as it gets within ``limit`` seconds."""
-    (folder / "actuator.inp").write_text(write_calculix(deck))
+    (folder / "actuator.inp").write_text(write(deck))
     begun = time.perf_counter()
     try:
         done = subprocess.run(
