@@ -20,7 +20,7 @@ from tests.fem import calculix
 from tests.programs import program
 
 PRESSURES = (0.04, 0.07, 0.1)  # MPa
-LIMIT = 240.0  # s
+LIMIT = 1800.0  # s; only a hang takes so long
 
 pytestmark = pytest.mark.slow
 
