@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
@@ -12,7 +12,9 @@ from fem.export.deck import Cube, Deck
 from fem.export.rows import deck_law, groups_of, row, rows, text
 from fem.export.springs import Springs
 
-_BRICK = {20: "C3D20R", 8: "C3D8"}
+# Abaqus' C3D8 takes the mean of the volume change, CalculiX' does not: it locks.
+_BRICK_OF_CALCULIX = {20: "C3D20R", 8: "C3D8I"}
+_BRICK_OF_ABAQUS = {20: "C3D20R", 8: "C3D8"}
 _WEDGE = {15: "C3D15", 6: "C3D6"}
 _NONE = 1e20  # D2 and D3: U has no such terms; CalculiX takes 0 for a value of its own
 # CalculiX' largest residual force over the mean one, and largest correction over the increment;
@@ -27,7 +29,7 @@ def write_calculix(deck: Deck) -> str:
     """Write a deck for CalculiX."""
     ref = len(deck.X) + 1
     lines = [
-        *_model(deck, 2),
+        *_model(deck, _BRICK_OF_CALCULIX, 2),
         "** translations of the rigid cap, then its rotations",
         f"*RIGID BODY, NSET=CAP, REF NODE={ref}, ROT NODE={ref + 1}",
         *_held(deck, [f"{ref}, 1, 1", f"{ref + 1}, 2, 3"]),
@@ -46,7 +48,7 @@ def write_abaqus(deck: Deck) -> str:
     """Write a deck for Abaqus/Standard."""
     ref = len(deck.X) + 1
     lines = [
-        *_model(deck, 1),
+        *_model(deck, _BRICK_OF_ABAQUS, 1),
         f"*RIGID BODY, ELSET=CAP, REF NODE={ref}",
         *_held(deck, [f"{ref}, 1, 1", f"{ref}, 5, 6"]),
     ]
@@ -73,7 +75,7 @@ def write_cube(cube: Cube) -> str:
     return text(lines)
 
 
-def _model(deck: Deck, references: int) -> Iterator[str]:
+def _model(deck: Deck, brick: Mapping[int, str], references: int) -> Iterator[str]:
     """Nodes, elements, sets and material; ``references`` more nodes on the cap, for its motion."""
     X = np.concatenate([deck.X, [[0.0, 0.0, deck.end]] * references])
     yield "*HEADING"
@@ -83,9 +85,9 @@ def _model(deck: Deck, references: int) -> Iterator[str]:
     yield from (row(n, *at) for n, at in enumerate(X, start=1))
     number = 0
     for name, kinds, elements in (
-        ("WALL", _BRICK, deck.wall),
+        ("WALL", brick, deck.wall),
         ("CAP", _WEDGE, deck.wedges),
-        ("CAP", _BRICK, deck.cap_bricks),
+        ("CAP", brick, deck.cap_bricks),
     ):
         yield from _elements(kinds[elements.shape[1]], name, elements, number)
         number += len(elements)

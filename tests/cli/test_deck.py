@@ -34,7 +34,7 @@ def test_meshes_and_pressures(samples: Path, tmp_path: Path) -> None:
     options = ("--for", "calculix", "--no-verify", "--mesh", "paper", "--pressure", "1.2")
     assert call("deck", samples / DESIGN, *options, "--out", "p").exit_code == 0
     text = (tmp_path / "p" / "actuator.inp").read_text()
-    assert "TYPE=C3D8," in text
+    assert "TYPE=C3D8I," in text
     assert "C3D20R" not in text
     assert text.count("*STEP") == 10
     assert text.count("INNER, P1, 0.12\n") == 1

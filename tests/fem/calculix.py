@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,9 +28,12 @@ class Run:
     said: str
 
 
-def run(program: str, folder: Path, deck: Deck, mesh: Mesh, limit: float) -> Run:
+def run(
+    program: str, folder: Path, deck: Deck, mesh: Mesh, limit: float,
+    write: Callable[[Deck], str] = write_calculix,
+) -> Run:  # fmt: skip
     """Let CalculiX, on one thread, go as far as it gets within ``limit`` seconds."""
-    (folder / "actuator.inp").write_text(write_calculix(deck))
+    (folder / "actuator.inp").write_text(write(deck))
     begun = time.perf_counter()
     try:
         done = subprocess.run(
@@ -52,13 +56,20 @@ def _positions(mesh: Mesh, u: FloatArray) -> FloatArray:
 
 
 def _displacements(frd: Path, nodes: int) -> list[FloatArray]:
-    """Displacements of the first nodes, (nodes, 3), at the end of every step that was finished."""
+    """Displacements of the first nodes, (nodes, 3), at the end of every step that was finished.
+
+    CalculiX writes the last state of a step that it gives up, too; every step takes a time of 1.
+    """
     found: list[FloatArray] = []
     lines = frd.read_text().splitlines() if frd.exists() else []
     rows: list[list[float]] | None = None
+    time = 0.0
     for line in lines:
-        if line.startswith(" -4"):
-            rows = [] if line.startswith(" -4  DISP ") else None
+        if line.startswith("  100CL"):
+            time = float(line[12:24])
+        elif line.startswith(" -4"):
+            wanted = line.startswith(" -4  DISP ") and abs(time - round(time)) < 1e-6
+            rows = [] if wanted else None
         elif line.startswith(" -1") and rows is not None:
             if int(line[3:13]) <= nodes:
                 rows.append([float(line[13 + 12 * k : 25 + 12 * k]) for k in range(3)])

@@ -131,7 +131,7 @@ def read_inp(text: str) -> Read:
 def _nodes_of(head: str) -> int:
     kind = re.search(r"TYPE=(\w+)", head)
     assert kind
-    return {"C3D20R": 20, "C3D8": 8, "C3D15": 15, "C3D6": 6, "SPRINGA": 2}[kind[1]]
+    return {"C3D20R": 20, "C3D8": 8, "C3D8I": 8, "C3D15": 15, "C3D6": 6, "SPRINGA": 2}[kind[1]]
 
 
 def _numbers(body: str) -> FloatArray:
