@@ -13,6 +13,7 @@ from shapely import LineString, Polygon, STRtree, box
 from profiletool.bending.kinematics import Bend, deform
 from profiletool.profile.target import Reach, profile_of_line, profile_of_object
 from profiletool.records.frames import Pose
+from profiletool.records.seal import sealed
 from profiletool.template.drawing import Drawing
 from profiletool.template.dxf import write_dxf
 from profiletool.template.mounting import mounting_drawing
@@ -93,7 +94,7 @@ def case(
     )
     bends = [Bend(j.centre_mm, j.openF_mm, j.sense * np.radians(30.0)) for j in joints]
     shapes = [deform(some, root + 60.0, D / 2, pose, profile.sign) for some in ((), bends)]
-    return design, profile, *shapes
+    return sealed(design), profile, *shapes
 
 
 CASES = {

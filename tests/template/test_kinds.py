@@ -121,7 +121,8 @@ def test_the_kerf_leaves_the_piece_its_size(build, kind):
     kerf = 0.3
     sheet, plain = build_sheet(build(), Wish(kind, kerf)), build_sheet(build(), Wish(kind))
     assert sheet.slits == plain.slits
-    (contour,), cuts = (sheet.drawing.layers[k].lines for k in (0, 1))
+    drawn = {layer.name: layer.lines for layer in sheet.drawing.layers}
+    (contour,), cuts = drawn["CUT_OUTER"], drawn["CUT_INNER"]
     left = Polygon(contour.points).buffer(-kerf / 2, join_style="mitre", mitre_limit=20.0)
     assert left.hausdorff_distance(Polygon(plain.outline)) < 1e-6
     assert len(cuts) == len(sheet.slits)
