@@ -147,10 +147,12 @@ def _single_threads(design: Design) -> BuiltMisfit:
 
 def _model_text(model: ModelInputs, apart: BuiltMisfit | None) -> str:
     """Say what of the model is not the paper's, and what single threads do."""
+    from profiletool.records.built import mm_text
+
     text = f"not the paper's model: {model}\n" if str(model) else ""
     if apart is not None:
         text += (
-            f"single threads lie {apart.as_set:.2f} mm RMS off the smeared gauze, "
-            f"{apart.trimmed:.2f} once the pressure is set\n"
+            f"single threads lie {mm_text(apart.as_set)} mm RMS off the smeared gauze, "
+            f"{mm_text(apart.trimmed)} once the pressure is set\n"
         )
     return text

@@ -5,6 +5,7 @@ from __future__ import annotations
 import textwrap
 from typing import Any
 
+from profiletool.records.built import mm_text
 from profiletool.records.design import Design, Joint
 from profiletool.records.seal import proven
 from profiletool.report.palette import GREY, INK, RED
@@ -42,7 +43,8 @@ def _status(design: Design) -> list[tuple[str, str]]:
         lines.append((f"verified by FE: {off.rms_mm:.2f} mm RMS with perfect parts", INK))
         if design.built is not None:
             expected = design.built.expected_rms_mm
-            said = f"built: {expected.as_set:.1f} mm as set, {expected.trimmed:.1f} mm pressure set"
+            as_set, trimmed = (mm_text(mm, 1) for mm in (expected.as_set, expected.trimmed))
+            said = f"built: {as_set} mm as set, {trimmed} mm pressure set"
             lines.append((said, INK))
     return lines
 

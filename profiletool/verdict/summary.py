@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from profiletool.records.built import Built
+from profiletool.records.built import Built, mm_text
 from profiletool.records.design import Design, Joint, Misfit
 from profiletool.records.seal import proven
 
@@ -39,8 +39,11 @@ def joint_table(design: Design) -> str:
 
 def _angle(design: Design, joint: Joint, name: str) -> str:
     """Give an angle of a joint, marked where finite elements cannot tell it for certain."""
+    angle: float | None = getattr(joint, name)
+    if angle is None:
+        return "–"
     doubtful = name == "theta_fe_deg" and joint.number in design.theta_uncertain
-    return f"{'~' if doubtful else ''}{joint.signed(getattr(joint, name)):.1f}"
+    return f"{'~' if doubtful else ''}{joint.signed(angle):.1f}"
 
 
 def off_text(misfit: Misfit) -> str:
@@ -52,8 +55,8 @@ def built_text(built: Built) -> str:
     """Say what to expect of the actuator that is built, as it is set and as its pressure is."""
     expected = built.expected_rms_mm
     return (
-        f"{expected.as_set:.2f} mm RMS expected at the planned pressure, "
-        f"{expected.trimmed:.2f} mm after the pressure is set on it"
+        f"{mm_text(expected.as_set)} mm RMS expected at the planned pressure, "
+        f"{mm_text(expected.trimmed)} mm after the pressure is set on it"
     )
 
 
@@ -75,7 +78,7 @@ def _built_short(design: Design) -> str:
     if design.built is None:
         return ""
     expected = design.built.expected_rms_mm
-    return f" with perfect parts ({expected.trimmed:.2f} mm expected once built and set)"
+    return f" with perfect parts ({mm_text(expected.trimmed)} mm expected once built and set)"
 
 
 def headline(design: Design) -> str:

@@ -24,7 +24,7 @@ from fem.solution import Solution
 from fem.solver import solve
 from profiletool.joints.closest import closest_points
 from profiletool.joints.threads import whole_angles
-from profiletool.records.built import BuiltMisfit
+from profiletool.records.built import BuiltMisfit, mm_text
 from profiletool.records.design import Design
 from profiletool.records.frames import Shape, base_axes
 from profiletool.records.side import side_sign
@@ -117,7 +117,8 @@ def threads_note(off: BuiltMisfit) -> Iterator[str]:
     if off.trimmed is not None and off.trimmed > _NOTED_MM:
         yield (
             "the sheet's single threads bend the tube otherwise than the smeared gauze: "
-            f"{off.trimmed:.1f} mm RMS apart once the pressure is set, {off.as_set:.1f} before"
+            f"{off.trimmed:.1f} mm RMS apart once the pressure is set, "
+            f"{mm_text(off.as_set, 1)} before"
         )
 
 
