@@ -109,6 +109,7 @@ def test_beyond_its_range_it_is_refused_or_marked(made: Path) -> None:
     assert call(*chosen).exit_code != 0
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("few_files")
 def test_a_design_has_the_tube_and_the_rubber_of_its_formula(
     made: Path, samples: Path, tmp_path: Path

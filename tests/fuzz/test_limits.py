@@ -97,6 +97,7 @@ def test_lines_that_all_end_in_one_place(tmp_path: Path, monkeypatch: pytest.Mon
         load_vector(tmp_path / "a.svg")
 
 
+@pytest.mark.slow
 def test_a_line_that_runs_to_and_fro(tmp_path: Path) -> None:
     text = "".join(f"{n % 2 * 1e4},{n % 2 * 1e4 + n * 0.01}\n" for n in range(20_000))
     (tmp_path / "a.csv").write_text(text)

@@ -125,6 +125,7 @@ def test_places_are_those_nearest_to_the_joints(result: Result) -> None:
         assert np.hypot(*np.subtract(at, there)) == pytest.approx(nearest, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_by_a_formula_of_the_users(samples: Path, tmp_path: Path) -> None:
     import formula
 

@@ -146,6 +146,7 @@ def test_photographs(name: str, shared: Path) -> None:
     assert_one_story(design(file, height_mm=PHOTOS[name], method="paper", verify=False))
 
 
+@pytest.mark.slow
 @some
 def test_three_fingers_find_room_where_the_notes_say(name: str, samples: Path) -> None:
     asked = {"method": "paper", "verify": False}

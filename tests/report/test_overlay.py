@@ -129,6 +129,7 @@ def test_finite_elements_a_millimetre_off_are_seen(bulb: Scene) -> None:
     assert worst_block(reduced(draw_overlay(scene)), reduced(draw_overlay(shifted))) > 16.0
 
 
+@pytest.mark.slow
 def test_a_tube_a_millimetre_off_is_seen(bulb: Scene) -> None:
     shifted = replace(bulb, bent=replace(bulb.bent, facing=bulb.bent.facing + 1.0))
     assert worst_block(reduced(draw_overlay(bulb)), reduced(draw_overlay(shifted))) > 16.0
@@ -148,6 +149,7 @@ def test_what_is_transparent_is_white() -> None:
     assert grey.tolist() == [[255, 40], [147, 255]]
 
 
+@pytest.mark.slow
 def test_an_infeasible_design_says_so(bulb: Scene) -> None:
     marked = replace(bulb, design=replace(bulb.design, feasible=False))
     assert worst_block(reduced(draw_overlay(bulb)), reduced(draw_overlay(marked))) > 16.0

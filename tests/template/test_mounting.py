@@ -155,6 +155,7 @@ def test_the_bar_is_100_mm():
     assert any(np.ptp(p, axis=0) == pytest.approx([100.0, 0.0]) for p in bars)
 
 
+@pytest.mark.slow
 @settings(max_examples=5, deadline=None)
 @given(
     side=st.sampled_from(["left", "right"]),

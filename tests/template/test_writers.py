@@ -128,6 +128,7 @@ def test_golden_files_reread():
     assert len(root.find(f"{SVG}g[@id='CUT_INNER']")) == 2 * 19 + 3 * 5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "build",
     [short_tube, *(pytest.param(b, marks=pytest.mark.slow) for b in (bulb, skew, long_tube))],
