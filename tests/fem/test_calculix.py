@@ -62,7 +62,7 @@ def test_one_and_the_same_discrete_problem(
     assert ours.pressure.tolist() == list(PRESSURES)
     for step, x in enumerate(theirs.x.values()):
         theta, tip = angle(mesh, x), x.reshape(-1, 3)[deck.tip] - deck.X[deck.tip]
-        record_property("angles_deg", (np.degrees(theta), np.degrees(ours.theta[step, 0])))
+        record_property("angles_deg", [float(np.degrees(a)) for a in (theta, ours.theta[step, 0])])
         assert ours.theta[step, 0] == pytest.approx(theta, rel=2e-3)
         off = np.linalg.norm(ours.tip[step] - tip)
         assert off < 2e-3 * np.linalg.norm(tip)

@@ -23,7 +23,7 @@ pytestmark = pytest.mark.slow
 DPI = 600
 MM = 25.4 / DPI  # a pixel
 DARK = 235  # grey below which a pixel is ink
-NOTCH_MM = 9.0  # the start edge is broken near its end
+NOTCH_MM = 30.0  # a long edge is broken at x = 0, a clamp from its end
 
 
 def ink_of(picture: Path) -> np.ndarray:
