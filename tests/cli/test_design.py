@@ -33,6 +33,7 @@ def test_the_main_job(samples: Path, tmp_path: Path) -> None:
     assert result.stdout.splitlines()[1].split()[:3] == ["joint", "F", "mm"]
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("coarse_mesh")
 def test_a_short_tube_is_verified(tmp_path: Path) -> None:
     result = call("design", arc(tmp_path), "--method", "paper")
@@ -106,6 +107,7 @@ def check_same(one: Path, other: Path) -> None:
         assert (one / file).read_bytes() == (other / file).read_bytes(), file
 
 
+@pytest.mark.slow
 def test_same_input_same_bytes(egg: Made, samples: Path, tmp_path: Path) -> None:
     assert unverified(samples / "egg.png", "--method", "paper").exit_code == 0
     check_same(egg.folder, tmp_path / "egg_design")
