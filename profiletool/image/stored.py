@@ -22,7 +22,6 @@ DAMAGE = (
     OverflowError,
     EOFError,
     MemoryError,
-    NotImplementedError,
     RuntimeError,
     struct.error,
     zlib.error,
