@@ -16,8 +16,11 @@ import numpy as np
 from fem.arrays import FloatArray
 
 # Polyamide, thread of 0.25 mm: EA of one thread, and two turns of a 2 mm mesh.
-THREAD_EA = 2000.0 * np.pi / 4.0 * 0.25**2
+THREAD_E = 2000.0
+THREAD_EA = THREAD_E * np.pi / 4.0 * 0.25**2
 PAPER_STIFFNESS = THREAD_EA * 2 / 2.0
+
+_SLACK, _SLACK_OVER_WALL = 1e-3, 0.186
 
 
 @dataclass(frozen=True)
@@ -45,7 +48,7 @@ class Gauze:
     """
 
     stiffness: float = PAPER_STIFFNESS
-    slack: float = 1e-3
+    slack: float = _SLACK
     transition: float = 2e-4
     allowance: float = float(np.radians(6.0))
     pitch: float | None = None
@@ -55,6 +58,22 @@ class Gauze:
             raise ValueError("a gauze needs stiffness > 0, 0 <= slack <= 1 and transition > 0")
         if not (0.0 <= self.allowance < np.pi and (self.pitch is None or self.pitch > 0.0)):
             raise ValueError("a gauze needs 0 <= allowance < pi and a pitch above 0, or none")
+
+
+def slack_on(wall: float, stiffness: float = PAPER_STIFFNESS) -> float:
+    """Share of their stiffness that threads keep in compression on a soft wall.
+
+    What is left is for the numbers alone. Beside a wall of softer rubber than the paper's the usual
+    share is no longer small: the wall, stiffened in compression, wrinkles at every window.
+
+    Parameters
+    ----------
+    wall : float
+        Shear modulus times thickness, N/mm.
+    stiffness : float
+        Of the gauze, N/mm.
+    """
+    return min(_SLACK, _SLACK_OVER_WALL * wall / stiffness)
 
 
 # As the paper modelled it: bars every 6 deg that resist compression, those at both ends of a

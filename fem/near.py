@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,13 +16,14 @@ from fem.equilibrium import Equilibrium
 from fem.errors import Attempt, NotConverged
 from fem.items import MakeItem
 from fem.loadpath import DEFAULT_OPTIONS, Options
+from fem.material import LAWS, Law, law
 from fem.mesh import Mesh, alike, make_mesh
 from fem.newton import Correction, correct
 from fem.sections import Chart
 from fem.solution import Solution, state_of
 from fem.transfer import settle, transfer
 
-_LEAST_WAY = 0.2  # of the way from one actuator to another, before it gives up
+_LEAST_WAY = 0.5  # of the way from one actuator to another: below it the path from rest is shorter
 
 
 def solve_near(
@@ -100,18 +101,23 @@ class _Way:
         step = 1.0
         while self._share < 1.0:
             share = min(self._share + step, 1.0)
-            there = between(self._first.actuator, self._actuator, share)
+            there = self._between(share)
             mesh = make_mesh(there, self._first.size, not self._first.half, like=self._first)
             done = self._corrected(mesh, None if flow is None else step * flow, threads)
             if self._history[-1].outcome == "converged":
                 # What is expected of the nodes of one mesh says nothing of another's.
                 flow = flow if alike(mesh, self._mesh) else None
                 self._share, self._mesh, self._x, self._done = share, mesh, done.pose.x, done
-            elif step > _LEAST_WAY:
+            elif step > _LEAST_WAY and self._between(0.5 * (self._share + share)) != there:
                 step *= 0.5
             else:
                 return False
         return True
+
+    def _between(self, share: float) -> Actuator:
+        if share == 1.0:
+            return self._actuator
+        return between(self._first.actuator, self._actuator, share)
 
     def _corrected(self, mesh: Mesh, flow: FloatArray | None, threads: int) -> Correction:
         chart = Chart(mesh)
@@ -163,9 +169,9 @@ def _moved(mesh: Mesh, x: FloatArray, flow: FloatArray) -> FloatArray:
 
 
 def between(first: Actuator, last: Actuator, share: float) -> Actuator:
-    """Actuator on the way from one to another with as many windows: lengths and angles.
+    """Actuator on the way from one to another with as many windows: lengths, angles, stiffness.
 
-    All else is the last one's.
+    All else, and rubber of another law, is the last one's.
     """
 
     def mix(a: float, b: float) -> float:
@@ -177,7 +183,34 @@ def between(first: Actuator, last: Actuator, share: float) -> Actuator:
             centre=mix(v.centre, w.centre),
             openF=mix(v.openF, w.openF),
             alpha=mix(v.alpha, w.alpha),
+            center=mix(v.center, w.center),
         )
         for v, w in zip(first.windows, last.windows, strict=True)
     )
-    return replace(last, length=mix(first.length, last.length), windows=windows)
+    gauze = replace(
+        last.gauze,
+        stiffness=mix(first.gauze.stiffness, last.gauze.stiffness),
+        slack=mix(first.gauze.slack, last.gauze.slack),
+        allowance=mix(first.gauze.allowance, last.gauze.allowance),
+    )
+    return replace(
+        last,
+        length=mix(first.length, last.length),
+        windows=windows,
+        wall=mix(first.wall, last.wall),
+        rubber=_mixed(first.rubber, last.rubber, mix),
+        gauze=gauze,
+    )
+
+
+def _mixed(first: Law, last: Law, mix: Callable[[float, float], float]) -> Law:
+    """Mix the constants of two rubbers of one law, where all of them are numbers."""
+    if type(first) is not type(last) or last.name not in LAWS:
+        return last
+    mixed: dict[str, float] = {}
+    for name, constant in last.constants.items():
+        before = first.constants[name]
+        if isinstance(before, tuple) or isinstance(constant, tuple):
+            return last
+        mixed[name] = mix(before, constant)
+    return law(last.name, mixed)

@@ -10,7 +10,7 @@ import numpy as np
 
 from fem.actuator import Actuator, chain
 from fem.errors import FemError, NotConverged
-from fem.gauze import PAPER_GAUZE, Gauze
+from fem.gauze import PAPER_GAUZE, Gauze, slack_on
 from fem.loadpath import DEFAULT_OPTIONS, Options
 from fem.material import Law
 from fem.measure import Sector
@@ -108,7 +108,8 @@ class _Settings:
 
 
 _SETTINGS: Mapping[str, _Settings] = {
-    "converged": _Settings(Gauze(), DEFAULT_MESH, DEFAULT_OPTIONS),
+    # What is kept of a pressure must not depend on which others are asked for.
+    "converged": _Settings(Gauze(), DEFAULT_MESH, Options(before=DEFAULT_OPTIONS.tolerance)),
     # Threads in compression buckle: the paper's model has no stable state above 0.3 to 1 bar.
     "paper": _Settings(PAPER_GAUZE, PAPER_MESH, Options(stable=False)),
 }
@@ -134,6 +135,8 @@ def actuator_of(task: Task) -> Actuator:
     gauze = _SETTINGS[task.model].gauze
     if gauze.pitch is not None:
         gauze = replace(gauze, pitch=gauze.pitch * (task.diameter_mm / _PAPER_DIAMETER))
+    else:
+        gauze = replace(gauze, slack=slack_on(task.rubber.shear_modulus * task.wall_mm))
     return replace(plain, gauze=gauze)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from profiletool.records.design import Design
 from profiletool.records.model import PAPER_MODEL, PAPER_NU
+from profiletool.verify.threads import threads_note
 
 _MESH_SHARE = 0.005  # of the length: what the default mesh leaves in a shape, at most
 
@@ -23,6 +24,13 @@ def model_notes(design: Design, refined: bool) -> Iterator[str]:
         if design.model != PAPER_MODEL:
             yield f"no finite elements took {design.model} into account"
         return
+    if design.threads_off_mm is not None:
+        yield from threads_note(design.threads_off_mm)
+    elif design.threads:
+        yield (
+            "no state with the sheet's single threads lies near that of the smeared gauze: the "
+            "tube may bend far otherwise; `profiletool verify --threads` says how far"
+        )
     length = design.tube.length_mm
     mesh = f"the mesh leaves up to {_MESH_SHARE * length:.1f} mm in the shape"
     if design.model == PAPER_MODEL and design.tube.rubber is None:

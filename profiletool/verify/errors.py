@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from profiletool.records.built import BuildErrors
+from fem.errors import FemError
+from profiletool.records.built import BuildErrors, BuiltMisfit
 from profiletool.records.design import Design
 from profiletool.records.units import FloatArray
 from profiletool.verify.built import band_of, built_of
 from profiletool.verify.fields import fields_of
 from profiletool.verify.run import Run
 from profiletool.verify.sensitivity import sensitivity_of
+from profiletool.verify.threads import sheet_off
 from profiletool.verify.trim import trim_of
 
 
@@ -35,9 +37,17 @@ def with_errors(
         Edges of the band about the object-facing line that holds 95 % of builds, mm; None where
         FE's tangent allows no derivatives.
     """
-    design = replace(design, trim=trim_of(design, run))
+    design = replace(design, trim=trim_of(design, run), threads_off_mm=_threads_off(design, run))
     fields = fields_of(design, run, points)
     if fields is None:
         return design, None
     sensitivity, built = sensitivity_of(design, fields, points), built_of(design, fields, build)
     return replace(design, sensitivity=sensitivity, built=built), band_of(design, fields, build)
+
+
+def _threads_off(design: Design, run: Run) -> BuiltMisfit | None:
+    """Say what the sheet's single threads do; None where that is not near what smeared ones do."""
+    try:
+        return sheet_off(design, run.solution)
+    except FemError:
+        return None

@@ -23,8 +23,8 @@ from fem.sensitivity import sensitivities
 from fem.solution import Solution
 from fem.solver import solve
 from profiletool.joints.closest import closest_points
-from profiletool.joints.threads import threads_of, whole_angles
-from profiletool.records.built import BuiltMisfit
+from profiletool.joints.threads import whole_angles
+from profiletool.records.built import BuiltMisfit, mm_text
 from profiletool.records.design import Design
 from profiletool.records.frames import Shape, base_axes
 from profiletool.records.side import side_sign
@@ -35,6 +35,7 @@ from profiletool.verify.tube import actuator_of
 
 _NOTED_MM = 0.5  # a difference after the trim that a design says
 _ROUNDS = 3  # of the trim
+_LINEAR_MM = 2.0  # RMS that the shape may move by derivatives alone
 _DECIMALS = 3
 
 
@@ -74,7 +75,8 @@ def threads_off(design: Design, lines: AxialLines, smeared: Solution | None = No
     design : Design
     lines : AxialLines
     smeared : Solution, optional
-        Of the design at its pressure; it is run where none is given.
+        Of the design at its pressure. The single threads' state is then looked for near it alone;
+        where none is given, both are run from rest if need be, which may take minutes.
 
     Returns
     -------
@@ -90,45 +92,24 @@ def threads_off(design: Design, lines: AxialLines, smeared: Solution | None = No
     actuator, pressure = actuator_of(design), design.pressure_bar / BAR_PER_MPA
     known = smeared if smeared is not None else _solved(actuator, pressure)
     facing = _shape(design, known).facing
-    single = replace(actuator, lines=lines)
-    found = _solved(single, pressure)
+    single, from_rest = replace(actuator, lines=lines), smeared is None
+    found = _near(single, known, pressure, from_rest=from_rest)
     off, rate, flow = _gap(design, found, facing, pressure)
-    least = as_set = float(np.sqrt(np.mean(off**2)))
+    as_set = _rms(off)
     for _ in range(_ROUNDS):
-        rise = -float(rate @ off) / float(rate @ rate)
-        pressure += rise
-        try:
-            found = solve_near(single, found, pressure, flow=rise * flow)
-        except NotConverged:
-            found = _solved(single, pressure)
-        off, rate, flow = _gap(design, found, facing, pressure)
-        trimmed = float(np.sqrt(np.mean(off**2)))
-        if not trimmed < 0.98 * least:
+        rise = _trim(off, rate)
+        if _rms(rise * rate) <= _LINEAR_MM:
             break
-        least = trimmed
-    return BuiltMisfit(round(as_set, _DECIMALS), round(min(least, trimmed), _DECIMALS))
+        pressure += rise
+        found = _near(single, found, pressure, rise * flow, from_rest=from_rest)
+        off, rate, flow = _gap(design, found, facing, pressure)
+    trimmed = _rms(off + _trim(off, rate) * rate)
+    return BuiltMisfit(round(as_set, _DECIMALS), round(trimmed, _DECIMALS))
 
 
-def with_threads(design: Design) -> Design:
-    """Run finite elements with the single threads of a design's sectors, as its sheet has them.
-
-    Returns
-    -------
-    Design
-        With ``threads`` and ``threads_off_mm``, and a note where they are far off.
-
-    Raises
-    ------
-    fem.errors.FemError
-        Where one of the runs has no state at the pressure.
-    """
-    off = threads_off(design, sheet_lines(design, whole_angles(design)))
-    return replace(
-        design,
-        threads=threads_of(design),
-        threads_off_mm=off,
-        warnings=(*design.warnings, *threads_note(off)),
-    )
+def sheet_off(design: Design, smeared: Solution | None = None) -> BuiltMisfit:
+    """Say how far the single threads of a design's own sheet move it; see `threads_off`."""
+    return threads_off(design, sheet_lines(design, whole_angles(design)), smeared)
 
 
 def threads_note(off: BuiltMisfit) -> Iterator[str]:
@@ -136,8 +117,34 @@ def threads_note(off: BuiltMisfit) -> Iterator[str]:
     if off.trimmed is not None and off.trimmed > _NOTED_MM:
         yield (
             "the sheet's single threads bend the tube otherwise than the smeared gauze: "
-            f"{off.trimmed:.1f} mm RMS apart once the pressure is set, {off.as_set:.1f} before"
+            f"{off.trimmed:.1f} mm RMS apart once the pressure is set, "
+            f"{mm_text(off.as_set, 1)} before"
         )
+
+
+def _rms(values: FloatArray) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def _trim(off: FloatArray, rate: FloatArray) -> float:
+    """Change of the pressure that leaves least of distances (N,), by their rates (N,)."""
+    return -float(rate @ off) / float(rate @ rate)
+
+
+def _near(
+    actuator: Actuator,
+    known: Solution,
+    pressure: float,
+    flow: FloatArray | None = None,
+    *,
+    from_rest: bool,
+) -> Solution:
+    try:
+        return solve_near(actuator, known, pressure, flow=flow)
+    except NotConverged:
+        if not from_rest:
+            raise
+        return _solved(actuator, pressure)
 
 
 def _solved(actuator: Actuator, pressure: float) -> Solution:

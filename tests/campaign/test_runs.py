@@ -17,7 +17,7 @@ import pytest
 import fem
 from fem.actuator import chain
 from fem.errors import FemError, NotConverged
-from fem.gauze import PAPER_GAUZE, Gauze
+from fem.gauze import PAPER_GAUZE, Gauze, slack_on
 from fem.loadpath import DEFAULT_OPTIONS, Options
 from fem.material import PAPER_RUBBER, MooneyRivlin
 from fem.measure import Sector
@@ -62,6 +62,18 @@ def test_all_lengths_go_with_the_diameter() -> None:
     assert (found.length, found.plug, found.windows[0].centre) == (90.0, 1.5, 45.0)
     assert (found.diameter, found.wall, found.windows[0].openF) == (30.0, 2.5, 12.0)
     assert (found.rubber, found.gauze) == (rubber, Gauze())
+
+
+def test_slack_threads_are_soft_beside_a_soft_rubber() -> None:
+    # Dragon Skin 10; with a share of 1e-3 the wall wrinkles, a bifurcation at 0.39 bar.
+    rubber = MooneyRivlin(0.0299, 0.0, 0.72757)
+    task = Task(14.0, 120.0, 20.0, 2.0, rubber, (0.5,))
+    found = actuator_of(task)
+    assert slack_on(PAPER_RUBBER.shear_modulus * 2.0) == Gauze.slack
+    assert found.gauze.slack == pytest.approx(1e-3 * rubber.shear_modulus / 0.2644, rel=0.01)
+    outcome = run(task)
+    assert outcome.failure is None
+    assert outcome.theta_deg == pytest.approx([86.1], abs=0.5)
 
 
 def test_the_papers_model(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -251,7 +263,9 @@ def test_a_run_gives_what_profiletool_joint_gives(done: Outcome) -> None:
     known = inflate(actuator_of(TASK), TASK.pressures_bar, LYING, DOWN)
     assert done.pressures_bar == TASK.pressures_bar
     assert done.failure is None
-    assert done.theta_deg == tuple(s.theta_deg[0] for s in known.verification.states)
+    theirs = [s.theta_deg[0] for s in known.verification.states]
+    assert done.theta_deg[-1] == pytest.approx(theirs[-1], rel=1e-6)
+    assert done.theta_deg == pytest.approx(theirs, abs=0.01)  # states in between are loose there
     for state, theta, dx, dy in zip(
         known.solution.states[1:], done.theta_deg, done.dx_mm, done.dy_mm, strict=True
     ):

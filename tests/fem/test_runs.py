@@ -56,8 +56,9 @@ def table(shared: Path, name: str) -> tuple[FloatArray, FloatArray]:
 def check(run: Solution) -> None:
     """What must hold of every run that ended."""
     assert run.converged
+    assert run.states[-1].residual <= 1e-6
     for state in run.states[1:]:
-        assert state.residual <= 1e-6
+        assert state.residual <= 3e-3
         assert state.energy_error <= 1e-3
         assert state.least_J > 0.0
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from profiletool.files.design_json import load_design
+from profiletool.records.built import BuiltMisfit
 from profiletool.records.design import Design
 from profiletool.records.model import ModelInputs
 from profiletool.records.options import in_flags
@@ -40,3 +41,11 @@ def test_a_model_that_nothing_took_is_said(design: Design) -> None:
     assert list(model_notes(idle, True)) == []
     (note,) = model_notes(replace(idle, model=ModelInputs(thread_factor=2.0)), True)
     assert note == "no finite elements took threads 2 times as stiff into account"
+
+
+def test_threads_that_lie_far_off_are_said(design: Design) -> None:
+    near = replace(design, threads_off_mm=BuiltMisfit(0.65, 0.2))
+    far = replace(design, threads_off_mm=BuiltMisfit(9.1, 0.8))
+    assert len(list(model_notes(near, True))) == 1
+    said, _ = model_notes(far, True)
+    assert "0.8 mm RMS apart once the pressure is set, 9.1 before" in said

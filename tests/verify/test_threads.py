@@ -15,9 +15,9 @@ from profiletool.records.design import Design
 from profiletool.verify.threads import (
     even_lines,
     sheet_lines,
+    sheet_off,
     threads_note,
     threads_off,
-    with_threads,
 )
 from profiletool.verify.tube import actuator_of
 from tests.verify.test_check import short
@@ -75,9 +75,8 @@ def test_a_design_says_when_its_threads_are_far_off(design: Design) -> None:
     assert "0.7 mm RMS apart once the pressure is set, 6.6 before" in note
 
 
-def test_threads_of_a_design_are_counted_and_run(design: Design) -> None:
-    found = with_threads(design)
-    assert found.threads == threads_of(design)
-    assert found.threads_off_mm is not None
-    assert found.threads_off_mm.as_set is not None
-    assert 0.0 < found.threads_off_mm.as_set < 1.0
+def test_threads_of_the_sheet_move_a_tube_a_little(design: Design) -> None:
+    found = sheet_off(design)
+    assert found.as_set is not None
+    assert found.trimmed is not None
+    assert 0.0 < found.trimmed < found.as_set < 1.0
