@@ -181,7 +181,6 @@ def test_on_the_command_line(
     assert out.exists() == (code in (0, 6))
 
 
-@pytest.mark.xfail(reason="the silhouette search takes the shadow, or no line drawing")
 @pytest.mark.parametrize("name", ["img-cutout-shadow", "img-window-shadow", "img-outline-drawing"])
 def test_shadows_and_line_drawings(name: str) -> None:
     outline, notes, code = None, (), 0

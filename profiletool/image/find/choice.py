@@ -8,8 +8,9 @@ from dataclasses import replace
 import cv2
 import numpy as np
 
-from profiletool.image.find.candidates import ANOTHER, BELIEVED, FAR, SAME_POLISHED, Candidate
+from profiletool.image.find.candidates import BELIEVED
 from profiletool.image.find.ground import BoolImage
+from profiletool.image.find.judge import Candidate, ahead
 from profiletool.image.find.masks import overlap
 from profiletool.image.find.region import ALIKE, SeveralAlike
 
@@ -35,21 +36,13 @@ def round_point(found: Sequence[Candidate]) -> list[Candidate]:
 
 def _told(found: Sequence[Candidate], favour: Sequence[float]) -> list[Candidate]:
     """Order candidates anew by what the user has said, and believe them the more."""
-    merits = [one.quality.merit + more for one, more in zip(found, favour, strict=True)]
-    order = sorted(range(len(found)), key=lambda number: -merits[number])
+    merits = np.array([one.quality.merit + more for one, more in zip(found, favour, strict=True)])
     made = []
-    for number in order:
-        ahead = {
-            name: min(
-                (merits[number] - merits[other] for other in order
-                 if overlap(found[number].mask, found[other].mask) < share),
-                default=FAR,
-            )
-            for name, share in (("lead", ANOTHER), ("fine_lead", SAME_POLISHED))
-        }  # fmt: skip
-        limited = {name: max(-FAR, min(FAR, lead)) for name, lead in ahead.items()}
-        quality = replace(found[number].quality, told=1.0, **limited)
-        made.append(replace(found[number], quality=quality))
+    for number in np.argsort(-merits, kind="stable"):
+        one = found[number]
+        alike = np.array([overlap(one.mask, other.mask) for other in found])
+        quality = ahead(replace(one.quality, told=1.0), merits[number] - merits, alike)
+        made.append(replace(one, quality=quality))
     return made
 
 

@@ -54,14 +54,13 @@ class Mosaic:
         return np.asarray(counts / self.size)
 
 
-def mosaic_of(lab: FloatImage) -> Mosaic:
-    """Lay out the patches of a picture (H, W, 3) in CIE Lab, lightly blurred."""
+def mosaic_of(lab: FloatImage, patch_px: int = _PATCH_PX) -> Mosaic:
+    """Lay out the patches of a picture (H, W, 3) in CIE Lab, about so large."""
     steep = _steepness(lab)
-    seeds = _seeds(steep)
+    seeds = _seeds(steep, patch_px)
     relief = np.clip(steep * 8.0, 0, 255).astype(np.uint8)
     flooded = np.asarray(cv2.watershed(np.dstack([relief] * 3), seeds), np.int32)
-    patch = _without_seams(flooded)
-    return _laid_out(lab, patch)
+    return _laid_out(lab, _without_seams(flooded))
 
 
 def ring_mosaic(lab: FloatImage, inner: BoolImage, outer: BoolImage) -> Mosaic:
@@ -84,16 +83,16 @@ def _steepness(lab: FloatImage) -> FloatImage:
     return np.asarray(np.sqrt(sum((step**2).sum(axis=2) for step in along)), np.float32)
 
 
-def _seeds(steep: FloatImage) -> NDArray[np.int32]:
+def _seeds(steep: FloatImage, side: int) -> NDArray[np.int32]:
     """Give the calmest pixel of every square of a grid a number."""
     height, width = steep.shape
-    rows, columns = -(-height // _PATCH_PX), -(-width // _PATCH_PX)
-    margin = (0, rows * _PATCH_PX - height), (0, columns * _PATCH_PX - width)
+    rows, columns = -(-height // side), -(-width // side)
+    margin = (0, rows * side - height), (0, columns * side - width)
     whole = np.pad(steep, margin, constant_values=np.inf)
-    squares = whole.reshape(rows, _PATCH_PX, columns, _PATCH_PX).swapaxes(1, 2)
+    squares = whole.reshape(rows, side, columns, side).swapaxes(1, 2)
     calmest = squares.reshape(rows, columns, -1).argmin(axis=2)
-    v = np.arange(rows)[:, None] * _PATCH_PX + calmest // _PATCH_PX
-    u = np.arange(columns)[None] * _PATCH_PX + calmest % _PATCH_PX
+    v = np.arange(rows)[:, None] * side + calmest // side
+    u = np.arange(columns)[None] * side + calmest % side
     seeds = np.zeros((height, width), np.int32)
     seeds[v, u] = np.arange(1, rows * columns + 1).reshape(rows, columns)
     return seeds
@@ -105,7 +104,8 @@ def _without_seams(flooded: NDArray[np.int32]) -> NDArray[np.int32]:
     while (seam := patch < 1).any():
         grown = cv2.dilate(patch.astype(np.float32), np.ones((3, 3), np.uint8))
         patch[seam] = grown[seam].astype(np.int32)
-    return np.asarray(patch - 1, np.int32)
+    numbers = np.unique(patch, return_inverse=True)[1]
+    return np.asarray(numbers.reshape(patch.shape), np.int32)
 
 
 def _bonds(

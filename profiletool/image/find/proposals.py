@@ -2,61 +2,68 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import cv2
 import numpy as np
 
 from profiletool.errors import NoObject
-from profiletool.image.find.ground import BoolImage, FloatImage, Ground, fit_ground, frame_of
+from profiletool.image.find.background import unconnected
+from profiletool.image.find.ground import BoolImage, FloatImage, Ground, fit_ground
+from profiletool.image.find.judge import LEARNED
 from profiletool.image.find.learned import learned_share
 from profiletool.image.find.masks import window_of
-from profiletool.image.find.mosaic import Mosaic, cut
 from profiletool.image.find.region import SeveralAlike, choose_object, region_on_ground
+from profiletool.image.find.rough import Rough, disc, rough_of
 from profiletool.image.find.saliency import barrier, strangeness
 from profiletool.image.find.view import View
 from profiletool.records.request import Point
 
-LEARNED = "learned"
 AT_POINT = "colours round the point"
 _SIZES = 0.004, 0.85  # of the frame
 _ROUGH_PIXELS = 20_000  # of maps that take their time
 _FLAT = 0.05  # a map that does not rise above this shows rounding only
 _MOST = 3  # regions of one map that are looked at
+_RECTANGLES = 0.9, 0.8, 0.65  # of the picture, where the object may lie
 _INWARD = 0.03  # of a region's size: what lies within its rim may lie on it
 
 
-def proposals(view: View, mosaic: Mosaic) -> Iterator[tuple[str, BoolImage]]:
+def proposals(
+    view: View, rough: Rough, maps: Mapping[str, FloatImage]
+) -> Iterator[tuple[str, BoolImage]]:
     """Give masks, each with the name of its method."""
     shape = view.barred.shape
-    step = max(1.0, float(np.sqrt(view.barred.size / _ROUGH_PIXELS)))
-    rough = _resized(view.lab, (round(shape[0] / step), round(shape[1] / step)))
-    maps = {
-        "colours": view.ground.distance,
-        "texture": _resized(strangeness(rough), shape),
-        "barriers": _resized(barrier(rough), shape),
-    }
     for method, strange in maps.items():
         guess = standing_out(strange) & ~view.barred
         yield method, guess
-        yield f"{method}, cut", _cut(view, mosaic, guess)
+        yield f"{method}, cut", rough.cut(guess)
     for method, guess in _guesses(view):
-        yield method, _cut(view, mosaic, guess)
+        yield f"{method}, cut", rough.cut(guess)
+    for share in () if view.boxed else _RECTANGLES:
+        guess = _rectangle(shape, share)
+        yield f"a rectangle of {100 * share:.0f} %", rough.cut(guess, elsewhere=False)
     learned = learned_share(view.rgb)
     if learned is not None:
         yield LEARNED, (learned > 0.5) & ~view.barred
 
 
+def maps_of(view: View) -> dict[str, FloatImage]:
+    """Give maps of what stands out, (H, W)."""
+    shape = view.barred.shape
+    step = max(1.0, float(np.sqrt(view.barred.size / _ROUGH_PIXELS)))
+    small = _resized(view.lab, (round(shape[0] / step), round(shape[1] / step)))
+    return {
+        "colours": view.ground.distance,
+        "texture": _resized(strangeness(small), shape),
+        "barriers": _resized(barrier(small), shape),
+        "background": unconnected(view.lab),
+    }
+
+
 def _resized(image: FloatImage, shape: tuple[int, ...]) -> FloatImage:
     way = cv2.INTER_AREA if shape[0] < image.shape[0] else cv2.INTER_LINEAR
     return np.asarray(cv2.resize(image, shape[1::-1], interpolation=way), np.float32)
-
-
-def _cut(view: View, mosaic: Mosaic, guess: BoolImage) -> BoolImage:
-    shape = guess.shape
-    core = None if view.point is None else disc(shape, view.point, 0.02 * min(shape))
-    return cut(mosaic, guess, frame_of(shape, 0.03) | view.barred, core)
 
 
 def standing_out(strange: FloatImage) -> BoolImage:
@@ -77,11 +84,18 @@ def _guesses(view: View) -> Iterator[tuple[str, BoolImage]]:
             yield AT_POINT, disc(shape, view.point, share * min(shape))
     if view.boxed:
         yield "the box", _inscribed(~view.barred)
-        yield "the box", ~view.barred
+        yield "all of the box", ~view.barred
         return
     middle = (width - 1) / 2.0, (height - 1) / 2.0
     yield "the middle", disc(shape, middle, 0.3 * min(shape))
-    yield "a rectangle", ~frame_of(shape, 0.1)
+
+
+def _rectangle(shape: tuple[int, ...], share: float) -> BoolImage:
+    """Mask the middle of a picture, a share of its height and width."""
+    inner = np.zeros(shape, bool)
+    high, wide = (round(side * (1.0 - share) / 2.0) for side in shape)
+    inner[high : shape[0] - high, wide : shape[1] - wide] = True
+    return inner
 
 
 def _inscribed(box: BoolImage) -> BoolImage:
@@ -91,12 +105,6 @@ def _inscribed(box: BoolImage) -> BoolImage:
     half = (columns.stop - columns.start) / 2.0, (rows.stop - rows.start) / 2.0
     v, u = np.ogrid[: box.shape[0], : box.shape[1]]
     return np.asarray(np.hypot((u - middle[0]) / half[0], (v - middle[1]) / half[1]) <= 1.0)
-
-
-def disc(shape: tuple[int, ...], centre: Point, radius: float) -> BoolImage:
-    """Mask a disc of an (H, W) picture."""
-    v, u = np.ogrid[: shape[0], : shape[1]]
-    return np.asarray(np.hypot(u - centre[0], v - centre[1]) <= radius)
 
 
 def regions(mask: BoolImage, point: Point | None) -> list[BoolImage]:
@@ -110,7 +118,7 @@ def regions(mask: BoolImage, point: Point | None) -> list[BoolImage]:
     return [region for region in found if _SIZES[0] < region.mean() < _SIZES[1]]
 
 
-def within(view: View, mosaic: Mosaic, host: BoolImage) -> Iterator[BoolImage]:
+def within(view: View, host: BoolImage) -> Iterator[BoolImage]:
     """Look into a region as if it were the ground of what lies on it; give masks of that."""
     window = window_of(host, 0)
     padded = np.pad(host, 1)
@@ -121,8 +129,8 @@ def within(view: View, mosaic: Mosaic, host: BoolImage) -> Iterator[BoolImage]:
     ground = replace(ground, distance=off)
     for found in _on_plain(view.lab[window], ground, view.point, window):
         yield _whole(found, host, window)
-    guess = _whole(standing_out(off) & ground.standing, host, window)
-    yield cut(mosaic, guess, ~inner | view.barred, near=host)
+    guess = standing_out(off) & ground.standing
+    yield _whole(rough_of(view, window, ~inner).cut(guess), host, window)
 
 
 def _on_plain(

@@ -65,8 +65,14 @@ class Quality:
         Whether four corners tell its shape, 0 to 1.
     regained : float
         Overlap with what its colours alone, against those of all the rest, cut out.
+    barriers, texture : float
+        Overlap with what stands out by barriers of colour, and by texture.
+    found_by, drawn_by : float
+        Share of the methods that find much the same, and that draw the same outline.
     agreement : float
-        Mean overlap with the other candidates.
+        Mean overlap with what all methods find.
+    taught, learned : float
+        Whether there is a learned opinion, and the overlap with it.
     on_sheet, part : float
         Whether it was found on something of four corners, and on something else, 0 to 1.
     sheet : float
@@ -91,7 +97,13 @@ class Quality:
     middle: float
     four_cornered: float
     regained: float = 1.0
+    barriers: float = 0.0
+    texture: float = 0.0
+    found_by: float = 1.0
+    drawn_by: float = 1.0
     agreement: float = 1.0
+    taught: float = 0.0
+    learned: float = 0.0
     on_sheet: float = 0.0
     part: float = 0.0
     sheet: float = 0.0

@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from profiletool.errors import NoObject, Unsure, UsageError
-from profiletool.image.find.candidates import BELIEVED, PLAIN, Candidate, find_candidates
+from profiletool.image.find.candidates import BELIEVED, find_candidates
 from profiletool.image.find.choice import different, doubt_of, fitting, refuse_another, round_point
 from profiletool.image.find.ground import BoolImage, FloatImage
 from profiletool.image.find.hand import Hand, hand_at
 from profiletool.image.find.hint import Hint
+from profiletool.image.find.judge import PLAIN, Candidate
 from profiletool.image.find.masks import overlap
 from profiletool.image.find.matte import edge_field
 from profiletool.image.find.mosaic import polished
@@ -26,7 +27,7 @@ from profiletool.image.marker import paint_mask
 from profiletool.records.units import FloatArray
 
 _MIDDLING_PIXELS = 400_000  # an outline is drawn anew at no more than this
-_VIEW_PIXELS = 90_000  # candidates are found and judged at no more than this
+_VIEW_PIXELS = 40_000  # candidates are found and judged at no more than this
 _RING_SHARE = 0.015  # of the region's size: what the smaller view may have missed
 _SAME = 0.95  # overlap of one region found at two sizes
 _SHOWN = 4
@@ -82,16 +83,14 @@ def _finer(
     rgb: NDArray[np.uint8], best: Candidate, polygons: list[FloatArray], step: float
 ) -> BoolImage:
     """Find a candidate's outline again in a larger picture (H, W, 3)."""
-    shape = rgb.shape[:2]
-    mask = resized(best.mask, shape)
-    if mask.shape == best.mask.shape:
-        return mask
+    mask = resized(best.mask, rgb.shape[:2])
     if best.method == PLAIN:
-        view = view_of(rgb, paint_mask(polygons, shape, step))
+        view = view_of(rgb, paint_mask(polygons, mask.shape, step))
         with contextlib.suppress(NoObject):
             stands = region_on_ground(view.lab, view.ground)
-            if overlap(stands, mask) > _SAME:
-                return stands
+            mask = stands if overlap(stands, mask) > _SAME else mask
+    elif mask.shape == best.mask.shape:
+        return mask
     return polished(soft_lab(rgb), mask, _RING_SHARE)
 
 

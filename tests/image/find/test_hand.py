@@ -60,6 +60,12 @@ def test_without_the_hand_it_is_found() -> None:
     assert found(Scene()).mask.sum() == pytest.approx(EGG, rel=0.005)
 
 
+def test_a_hand_in_a_sleeve() -> None:
+    held = Scene().arm((30, 40, 30), up_to=285, wide=60)
+    cv2.circle(held.rgb, (212, 240), 32, TAN, -1)
+    assert found(held).held
+
+
 def test_a_box_round_what_is_free() -> None:
     silhouette = found(Scene().arm(TAN).fingers(TAN), Hint(box=FREE))
     assert not silhouette.held
@@ -108,15 +114,26 @@ def test_a_warm_shadow_is_no_hand(rim: tuple[int, ...]) -> None:
 def test_a_wooden_lid_of_what_leaves_the_picture_is_no_hand() -> None:
     jar = Scene(GREY, TAN)
     cv2.rectangle(jar.rgb, (150, 140), (250, HEIGHT), BLUE, -1)
-    picture = jar.picture()
-    whole = np.abs(picture.rgb.astype(int) - GREY).max(axis=2) > 40
-    assert hand_at(view_of(picture.rgb, np.zeros(SHAPE, bool)), whole) is Hand.NONE
+    assert found(jar).touches == {"bottom"}
 
 
 def test_a_hand_that_hides_nothing() -> None:
     beside = Scene()
     cv2.line(beside.rgb, (400, 250), (330, 200), TAN, 60, cv2.LINE_AA)
     assert found(beside).mask.sum() == pytest.approx(EGG, rel=0.005)
+
+
+def test_a_large_hand_among_many_things_holds_none_that_it_does_not_touch() -> None:
+    paints = np.array([(30, 60, 200), (30, 170, 60), (20, 140, 150), (60, 60, 70)])
+    squares = np.random.default_rng(3).integers(0, 4, (HEIGHT // 20, WIDTH // 20))
+    ground = np.kron(paints[squares], np.ones((20, 20, 1)))
+    rgb = ground.astype(np.uint8)
+    egg = np.zeros(SHAPE, np.uint8)
+    cv2.circle(egg, (150, 100), 40, 1, -1)
+    cv2.line(rgb, (WIDTH, 250), (320, 200), TAN, 60)
+    nowhere = np.zeros(SHAPE, bool)
+    assert hand_at(view_of(rgb, nowhere), egg > 0) is Hand.NONE
+    assert hand_at(view_of(ground.astype(np.uint8), nowhere), egg > 0) is Hand.NONE
 
 
 def test_a_table_of_wood_is_no_hand() -> None:

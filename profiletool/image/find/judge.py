@@ -1,0 +1,161 @@
+"""Judgement of regions: by themselves, by what finds them, and by each other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from profiletool.image.find.ground import BoolImage, FloatImage, frame_of
+from profiletool.image.find.masks import overlap
+from profiletool.image.find.mosaic import cut, mosaic_of
+from profiletool.image.find.quality import Quality, quality_of
+from profiletool.image.find.view import View
+from profiletool.records.units import FloatArray
+
+PLAIN, LEARNED = "plain ground", "learned"
+ANOTHER, FAR = 0.8, 3.0  # overlap below which two are not one thing, and a lead that is enough
+SAME = 0.93  # overlap from which on two have one outline
+_AGREE = 0.9  # overlap of two methods that find the same, outline and all
+_MOSTLY, _SMALLER = 0.9, 0.85  # of a region: what lies in a larger one, and how much smaller it is
+_UNCLEAR, _CLEAR_SHEET = 0.05, 0.4  # how clear nothing is, and a sheet at least
+
+
+@dataclass(frozen=True)
+class Region:
+    """A mask, what found it, and the number of the region that it was found on."""
+
+    mask: BoolImage
+    method: str
+    host: int | None = None
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A mask of a view, (H, W), what found it, how good it is, and the chance that it is right."""
+
+    mask: BoolImage
+    method: str
+    quality: Quality
+
+    @property
+    def confidence(self) -> float:
+        """Chance that the mask is right, 0 to 1."""
+        return self.quality.confidence
+
+
+def judged(
+    view: View,
+    maps: Mapping[str, FloatImage],
+    votes: Sequence[Region],
+    found: Sequence[Region],
+) -> list[Candidate]:
+    """Judge what was found in a view.
+
+    Parameters
+    ----------
+    view : View
+    maps : dict
+        Of what stands out, each (H, W).
+    votes : sequence of Region
+        What each method found.
+    found : sequence of Region
+
+    Returns
+    -------
+    list of Candidate
+        The likeliest first.
+    """
+    made = _found_by(_by_themselves(view, maps, found), votes, found)
+    size = np.array([one.mask.sum() for one in found], float)
+    common = np.array([[(one.mask & two.mask).sum() for two in found] for one in found], float)
+    alike = common / (size[:, None] + size - common)
+    larger = (common > _MOSTLY * size[:, None]) & (size[:, None] < _SMALLER * size)
+    made = _on_each_other(view, found, made, larger)
+    merits = np.array([quality.merit for quality in made])
+    candidates = [
+        Candidate(one.mask, one.method, ahead(quality, merits[number] - merits, alike[number]))
+        for number, (one, quality) in enumerate(zip(found, made, strict=True))
+    ]
+    return sorted(candidates, key=lambda candidate: candidate.quality.merit, reverse=True)
+
+
+def ahead(quality: Quality, gains: FloatArray, alike: FloatArray) -> Quality:
+    """Tell a quality how far it leads: merits gained on all, (N,), and overlaps with them, (N,)."""
+    lead, fine = (min((*gains[alike < share], FAR)) for share in (ANOTHER, SAME))
+    return replace(quality, lead=max(float(lead), -FAR), fine_lead=max(float(fine), -FAR))
+
+
+def _by_themselves(
+    view: View, maps: Mapping[str, FloatImage], found: Sequence[Region]
+) -> list[Quality]:
+    mosaic = mosaic_of(view.lab)
+    ground = frame_of(view.barred.shape, 0.01) | view.barred
+    shares = {
+        name: np.clip(maps[name] / max(float(np.quantile(maps[name], 0.99)), 1e-3), 0.0, 1.0)
+        for name in ("barriers", "texture")
+    }
+    made = []
+    for one in found:
+        home = None if one.host is None else found[one.host].mask
+        made.append(
+            replace(
+                quality_of(view, one.mask, home),
+                regained=overlap(one.mask, cut(mosaic, one.mask, ground, rounds=1)),
+                **{
+                    name: float(share[one.mask].sum() / np.maximum(share, one.mask).sum())
+                    for name, share in shares.items()
+                },
+            )
+        )
+    return made
+
+
+def _found_by(
+    made: Sequence[Quality], votes: Sequence[Region], found: Sequence[Region]
+) -> list[Quality]:
+    """Count the methods that find much the same, and look up what the learned one says."""
+    cast = np.stack([one.mask.ravel() for one in votes]).astype(np.float32)
+    learned = [number for number, one in enumerate(votes) if one.method == LEARNED]
+    told = []
+    for one, quality in zip(found, made, strict=True):
+        common = cast @ one.mask.ravel().astype(np.float32)
+        alike = common / (cast.sum(axis=1) + float(one.mask.sum()) - common)
+        told.append(
+            replace(
+                quality,
+                found_by=float((alike > ANOTHER).mean()),
+                drawn_by=float((alike > _AGREE).mean()),
+                agreement=float(alike.mean()),
+                taught=1.0 if learned else 0.0,
+                learned=max((float(alike[number]) for number in learned), default=0.0),
+            )
+        )
+    return told
+
+
+def _on_each_other(
+    view: View, found: Sequence[Region], made: Sequence[Quality], larger: BoolImage
+) -> list[Quality]:
+    """Tell sheets from what lies on them, and a whole from its parts."""
+    told = []
+    for number, quality in enumerate(made):
+        host = found[number].host
+        whole = [
+            made[k].clear * (1.0 - made[k].four_cornered)
+            for k in np.flatnonzero(larger[number]).tolist()
+        ]
+        borne = [q.clear for one, q in zip(found, made, strict=True) if one.host == number]
+        clear = 1.0 if host is None else min(1.0, made[host].clear / _CLEAR_SHEET)
+        stands = found[number].method == PLAIN and view.plain
+        told.append(
+            replace(
+                quality,
+                on_sheet=quality.on_sheet * clear,
+                within=min(1.0, max(whole, default=0.0) / max(quality.clear, _UNCLEAR)),
+                plain=quality.edge if stands else 0.0,
+                sheet=max(borne, default=0.0) * quality.four_cornered,
+            )
+        )
+    return told
