@@ -16,27 +16,25 @@ from profiletool.image.find.region import ALIKE, SeveralAlike
 
 _APART = 0.05  # overlap below which two masks are two things
 _EXTENT = 0.7  # overlap of a mask's own box with the one that was given
-_BY_FIT, _BY_WIDTH = 8.0, 14.0  # merit of a mask that fills a box, of one that is small
+_BY_WIDTH = 3.0  # merit that a point takes from what is as large as the picture
 _NEAR, _LITTLE = 0.7, 0.06  # merit behind the best; share of its area that is worth a word
 _SAME_SHOWN = 0.9  # overlap of two masks that look the same
 
 
 def fitting(found: Sequence[Candidate], barred: BoolImage) -> list[Candidate]:
-    """Keep what fills a box, all but which is barred (H, W); what fills it best comes first."""
+    """Keep what fills a box, all but which is barred (H, W)."""
     box = _extent(~barred)
-    fits = [(overlap(_extent(one.mask), box), one) for one in found]
-    kept = [(fit, one) for fit, one in fits if fit >= _EXTENT]
-    return _told([one for _, one in kept], [_BY_FIT * fit for fit, _ in kept])
+    return _told([one for one in found if overlap(_extent(one.mask), box) >= _EXTENT])
 
 
 def round_point(found: Sequence[Candidate]) -> list[Candidate]:
     """Put what lies most closely round a point first; all candidates hold it."""
-    return _told(found, [-_BY_WIDTH * one.quality.width for one in found])
+    return _told(found, _BY_WIDTH)
 
 
-def _told(found: Sequence[Candidate], favour: Sequence[float]) -> list[Candidate]:
+def _told(found: Sequence[Candidate], by_width: float = 0.0) -> list[Candidate]:
     """Order candidates anew by what the user has said, and believe them the more."""
-    merits = np.array([one.quality.merit + more for one, more in zip(found, favour, strict=True)])
+    merits = np.array([one.quality.merit - by_width * one.quality.width for one in found])
     made = []
     for number in np.argsort(-merits, kind="stable"):
         one = found[number]

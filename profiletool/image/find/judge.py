@@ -18,8 +18,8 @@ PLAIN, LEARNED = "plain ground", "learned"
 ANOTHER, FAR = 0.8, 3.0  # overlap below which two are not one thing, and a lead that is enough
 SAME = 0.93  # overlap from which on two have one outline
 _AGREE = 0.9  # overlap of two methods that find the same, outline and all
-_MOSTLY, _SMALLER = 0.9, 0.85  # of a region: what lies in a larger one, and how much smaller it is
-_UNCLEAR, _CLEAR_SHEET = 0.05, 0.4  # how clear nothing is, and a sheet at least
+_MOSTLY, _SMALLER = 0.9, 0.7  # of a region: what lies in a larger one, and how much smaller it is
+_UNCLEAR, _CLEAR = 0.05, 0.35  # how clear nothing is, and a sheet or what lies on it
 
 
 @dataclass(frozen=True)
@@ -71,8 +71,8 @@ def judged(
     size = np.array([one.mask.sum() for one in found], float)
     common = np.array([[(one.mask & two.mask).sum() for two in found] for one in found], float)
     alike = common / (size[:, None] + size - common)
-    larger = (common > _MOSTLY * size[:, None]) & (size[:, None] < _SMALLER * size)
-    made = _on_each_other(view, found, made, larger)
+    around = (common > _MOSTLY * size[:, None]) & (size[:, None] < _SMALLER * size)
+    made = _on_each_other(view, found, made, around)
     merits = np.array([quality.merit for quality in made])
     candidates = [
         Candidate(one.mask, one.method, ahead(quality, merits[number] - merits, alike[number]))
@@ -136,26 +136,27 @@ def _found_by(
 
 
 def _on_each_other(
-    view: View, found: Sequence[Region], made: Sequence[Quality], larger: BoolImage
+    view: View, found: Sequence[Region], made: Sequence[Quality], around: BoolImage
 ) -> list[Quality]:
-    """Tell sheets from what lies on them, and a whole from its parts."""
+    """Tell sheets from what lies on them, and a whole from its parts.
+
+    ``around`` (N, N) says of each whether another lies round it.
+    """
     told = []
     for number, quality in enumerate(made):
-        host = found[number].host
-        whole = [
-            made[k].clear * (1.0 - made[k].four_cornered)
-            for k in np.flatnonzero(larger[number]).tolist()
-        ]
-        borne = [q.clear for one, q in zip(found, made, strict=True) if one.host == number]
-        clear = 1.0 if host is None else min(1.0, made[host].clear / _CLEAR_SHEET)
+        round_it = [one for one, holds in zip(made, around[number], strict=True) if holds]
+        in_it = [one for one, held in zip(made, around[:, number], strict=True) if held]
+        sheets = [one.four_cornered * min(1.0, one.clear / _CLEAR) for one in round_it]
+        wholes = [one.clear * (1.0 - one.four_cornered) for one in round_it]
+        borne = [min(1.0, one.clear / _CLEAR) for one in in_it]
         stands = found[number].method == PLAIN and view.plain
         told.append(
             replace(
                 quality,
-                on_sheet=quality.on_sheet * clear,
-                within=min(1.0, max(whole, default=0.0) / max(quality.clear, _UNCLEAR)),
-                plain=quality.edge if stands else 0.0,
+                on_sheet=max(sheets, default=0.0),
+                within=min(1.0, max(wholes, default=0.0) / max(quality.clear, _UNCLEAR)),
                 sheet=max(borne, default=0.0) * quality.four_cornered,
+                plain=quality.edge if stands else 0.0,
             )
         )
     return told

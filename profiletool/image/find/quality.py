@@ -60,7 +60,8 @@ class Quality:
     size : float
         Share of the picture.
     middle : float
-        How near the region's centre is to the picture's: 1 there, 0 in a corner.
+        How near the region's centre is to the picture's: 1 there, 0 in a corner, and 0 too where
+        the user has said where the object is.
     four_cornered : float
         Whether four corners tell its shape, 0 to 1.
     regained : float
@@ -73,10 +74,10 @@ class Quality:
         Mean overlap with what all methods find.
     taught, learned : float
         Whether there is a learned opinion, and the overlap with it.
-    on_sheet, part : float
-        Whether it was found on something of four corners, and on something else, 0 to 1.
+    on_sheet : float
+        How clear something of four corners is round it, 0 to 1.
     sheet : float
-        How clear what lies on it is, where it has four corners.
+        How clear what lies on it is, where it has four corners, 0 to 1.
     within : float
         How clear a larger candidate round it is against it, where that is no sheet, 0 to 1.
     plain : float
@@ -105,7 +106,6 @@ class Quality:
     taught: float = 0.0
     learned: float = 0.0
     on_sheet: float = 0.0
-    part: float = 0.0
     sheet: float = 0.0
     within: float = 0.0
     plain: float = 0.0
@@ -147,7 +147,6 @@ def quality_of(view: View, mask: BoolImage, home: BoolImage | None = None) -> Qu
     rim = rim_of(view.lab, mask, round(float(np.clip(_REACH_SHARE * np.sqrt(area), *_REACH_PX))))
     edge, steady, peak = edge_support(rim)
     separation, ground = _colour_support(view.cell, mask, home)
-    on_sheet = 0.0 if home is None else _four_cornered(home)
     return Quality(
         edge=edge,
         steady=steady,
@@ -156,10 +155,8 @@ def quality_of(view: View, mask: BoolImage, home: BoolImage | None = None) -> Qu
         ground=ground,
         border=float(rim.on_frame.mean()),
         size=area / mask.size,
-        middle=_middle(mask),
+        middle=0.0 if view.told else _middle(mask),
         four_cornered=_four_cornered(mask),
-        on_sheet=on_sheet,
-        part=0.0 if home is None else 1.0 - on_sheet,
     )
 
 

@@ -50,6 +50,11 @@ class View:
         """Whether a smooth colour surface tells all of the ground."""
         return self.ground.scatter_lab < _MOTTLED_LAB
 
+    @property
+    def told(self) -> bool:
+        """Whether the user has said where the object is."""
+        return self.boxed or self.point is not None
+
 
 def view_of(
     rgb: NDArray[np.uint8],
