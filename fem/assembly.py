@@ -13,13 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem.arrays import FloatArray, IntArray
+from fem.arrays import DOUBLE, SINGLE, DType, FloatArray, IntArray
 from fem.deadweight import Deadweight
 from fem.items import ITEMS, MakeItem
 from fem.mesh import Mesh
 from fem.part import Part
 from fem.pattern import Unknowns
-from fem.pivot import Pivot
+from fem.pivot import DoubtfulPivot, Pivot
 from fem.plug import Plug
 
 
@@ -91,9 +91,19 @@ class System:
     threads : {1, 2}
     extra : sequence of MakeItem
         What contributes to the energy beside `fem.items.ITEMS` and the actuator's weight.
+    single : bool
+        Keep the tangent in single precision until a pivot of it is not positive, and in double
+        from there on. Forces and energies are in double in any case.
     """
 
-    def __init__(self, mesh: Mesh, threads: int = 2, extra: Sequence[MakeItem] = ()) -> None:
+    def __init__(
+        self,
+        mesh: Mesh,
+        threads: int = 2,
+        extra: Sequence[MakeItem] = (),
+        *,
+        single: bool = False,
+    ) -> None:
         self.mesh, self.extra = mesh, tuple(extra)
         self.unknowns = Unknowns.of(mesh)
         self.plug = Plug(mesh)
@@ -101,12 +111,20 @@ class System:
         middle = mesh.layers // 2
         own = () if mesh.actuator.weight is None else (Deadweight,)
         self.middle, items = middle, (*ITEMS, *own, *extra)
-        self._parts = (
-            Part(mesh, self.unknowns, range(middle), items, from_root=True),
-            Part(mesh, self.unknowns, range(middle, mesh.layers), items, from_root=False),
-        )
-        self._last = Pivot(len(self.unknowns.ring) if middle > 0 else 0)
+        self._items = items
+        self._set(SINGLE if single else DOUBLE)
         self._pool = ThreadPoolExecutor(1) if threads > 1 else None
+
+    def _set(self, dtype: DType) -> None:
+        """Lay the elimination out for a tangent of a precision."""
+        mesh, middle = self.mesh, self.middle
+        layers = {True: range(middle), False: range(middle, mesh.layers)}
+        root, tip = (
+            Part(mesh, self.unknowns, own, self._items, from_root=first, dtype=dtype)
+            for first, own in layers.items()
+        )
+        self._parts = (root, tip)
+        self._last = Pivot(len(self.unknowns.ring) if middle > 0 else 0, dtype)
 
     def close(self) -> None:
         """Let the second thread go."""
@@ -141,13 +159,19 @@ class System:
     def factor(self, x: FloatArray, pressure: float) -> tuple[Forces, Inverse | None]:
         """Give forces and factored tangent at x under a pressure, MPa; None where least_J <= 0."""
         self.version += 1
+        try:
+            forces = self._factor(x, pressure)
+        except DoubtfulPivot:
+            self._set(DOUBLE)
+            forces = self._factor(x, pressure)
+        return forces, Inverse(self, self.version) if forces.least_J > 0.0 else None
+
+    def _factor(self, x: FloatArray, pressure: float) -> Forces:
         self._both(lambda part: part.evaluate(x, pressure, self.plug))
         forces = self._gather(x)
-        if not forces.least_J > 0.0:
-            return forces, None
-        if self.middle > 0:
+        if forces.least_J > 0.0 and self.middle > 0:
             self._last.factorise(self._parts[0].next, self._parts[1].next)
-        return forces, Inverse(self, self.version)
+        return forces
 
     def _gather(self, x: FloatArray) -> Forces:
         ours, theirs = (part.sums for part in self._parts)
@@ -180,11 +204,11 @@ class System:
         (s, s)
         """
         mesh = self.mesh
-        nodal = np.zeros((len(layers), 2 * mesh.ring + mesh.mid, 3))
+        nodal = np.zeros((len(layers), 2 * mesh.ring + mesh.mid, 3), self._last.factor.dtype)
         nodal[np.arange(len(layers))[:, None], mesh.outer[around]] = units
         loads = nodal.reshape(len(layers), -1)
         result = np.zeros((len(layers), len(layers)))
-        T = self.plug.motions(x)
+        T = self.plug.motions(x).astype(nodal.dtype)
         rest: dict[Part, tuple[IntArray, FloatArray]] = {}
 
         def reduce(part: Part) -> None:
@@ -230,7 +254,8 @@ class System:
 
     def solve(self, rhs: FloatArray, *, positive: bool = False) -> FloatArray:
         """Solve with the present factorisation for rhs (k, count); see `Inverse.solve`."""
-        out = np.array(rhs)
+        dtype = self._last.factor.dtype
+        out = np.array(rhs, dtype)
         rings, mids, plug = self.split(out)
         carry: dict[Part, FloatArray] = {}
 
@@ -238,7 +263,7 @@ class System:
             carry[part] = part.forward(rings, mids, plug)
 
         self._both(forward)
-        middle = np.zeros((len(out), 0))
+        middle = np.zeros((len(out), 0), dtype)
         if self.middle > 0:
             middle = rings[:, self.middle - 1] - sum(carry.values())
             self._last.forward(middle)
@@ -247,4 +272,4 @@ class System:
             self._last.backward(middle)
             rings[:, self.middle - 1] = middle
         self._both(lambda part: part.backward(rings, mids, plug, middle, positive=positive))
-        return out
+        return out.astype(DOUBLE, copy=False)
