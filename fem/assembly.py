@@ -80,6 +80,9 @@ class Inverse:
             raise RuntimeError("the tangent has been factored anew since")
 
 
+_Halves = tuple[Part, Part, Pivot]  # from the root, from the tip, and the ring between them
+
+
 class System:
     """The equations of one mesh.
 
@@ -92,8 +95,8 @@ class System:
     extra : sequence of MakeItem
         What contributes to the energy beside `fem.items.ITEMS` and the actuator's weight.
     single : bool
-        Keep the tangent in single precision until a pivot of it is not positive, and in double
-        from there on. Forces and energies are in double in any case.
+        Factor tangents in single precision where double is not asked for, until a pivot of one is
+        not positive. Forces and energies are in double in any case.
     """
 
     def __init__(
@@ -111,20 +114,23 @@ class System:
         middle = mesh.layers // 2
         own = () if mesh.actuator.weight is None else (Deadweight,)
         self.middle, items = middle, (*ITEMS, *own, *extra)
-        self._items = items
-        self._set(SINGLE if single else DOUBLE)
+        self._items, self._single = items, single
+        self._halves: dict[DType, _Halves] = {}
+        self._parts: tuple[Part, ...] = ()
+        self._use(DOUBLE if not single else SINGLE)
         self._pool = ThreadPoolExecutor(1) if threads > 1 else None
 
-    def _set(self, dtype: DType) -> None:
-        """Lay the elimination out for a tangent of a precision."""
-        mesh, middle = self.mesh, self.middle
-        layers = {True: range(middle), False: range(middle, mesh.layers)}
-        root, tip = (
-            Part(mesh, self.unknowns, own, self._items, from_root=first, dtype=dtype)
-            for first, own in layers.items()
-        )
+    def _use(self, dtype: DType) -> None:
+        """Go on with a tangent of a precision."""
+        if dtype not in self._halves:
+            mesh, middle, u = self.mesh, self.middle, self.unknowns
+            root = Part(mesh, u, range(middle), self._items, from_root=True, dtype=dtype)
+            tip = Part(
+                mesh, u, range(middle, mesh.layers), self._items, from_root=False, dtype=dtype
+            )
+            self._halves[dtype] = (root, tip, Pivot(len(u.ring) if middle > 0 else 0, dtype))
+        root, tip, self._last = self._halves[dtype]
         self._parts = (root, tip)
-        self._last = Pivot(len(self.unknowns.ring) if middle > 0 else 0, dtype)
 
     def close(self) -> None:
         """Let the second thread go."""
@@ -156,13 +162,21 @@ class System:
         self._both(lambda part: part.evaluate(x, 0.0, None), alone=True)
         return self._gather(x)
 
-    def factor(self, x: FloatArray, pressure: float) -> tuple[Forces, Inverse | None]:
-        """Give forces and factored tangent at x under a pressure, MPa; None where least_J <= 0."""
+    def factor(
+        self, x: FloatArray, pressure: float, *, double: bool = True
+    ) -> tuple[Forces, Inverse | None]:
+        """Give forces and factored tangent at x under a pressure, MPa; None where least_J <= 0.
+
+        ``double``: not in single precision, where the step has an error of a tenth and more along
+        the soft bending of a long tube.
+        """
         self.version += 1
+        self._use(SINGLE if self._single and not double else DOUBLE)
         try:
             forces = self._factor(x, pressure)
         except DoubtfulPivot:
-            self._set(DOUBLE)
+            self._single = False
+            self._use(DOUBLE)
             forces = self._factor(x, pressure)
         return forces, Inverse(self, self.version) if forces.least_J > 0.0 else None
 

@@ -17,6 +17,7 @@ Outcome = Literal["converged", "residual", "inverted"]
 _MOST = 10  # factorisations after which it gives up
 _HOPELESS = 1e6  # so does it when the residual has grown this much
 _DAMPINGS = 4
+_TIGHT, _NEAR = 1e-4, 1e-3  # a tolerance below the one takes double precision below the other
 _DESCENTS = 60  # factorisations
 _TURN = 0.3  # rad, the most that a section turns in one step downhill
 _DECREASE = 1e-4  # of the energy, over what its slope promises
@@ -91,7 +92,8 @@ def correct(
     first = residual = np.inf
     factored = iterations = 0
     while factored < _MOST:
-        forces, inverse = system.factor(pose.x, pressure)
+        double = tolerance < _TIGHT and residual < _NEAR
+        forces, inverse = system.factor(pose.x, pressure, double=double)
         factored += 1
         if inverse is None:
             outcome = "inverted"

@@ -77,7 +77,9 @@ class Part:
             for layer, p in self.patterns.items()
         }
         self.pivots = {layer: Pivot(size, dtype) for layer, size in sizes.items()}
-        self.couplings = {layer: np.empty((size, plain.far), dtype) for layer, size in sizes.items()}
+        self.couplings = {
+            layer: np.empty((size, plain.far), dtype) for layer, size in sizes.items()
+        }
         self.next = np.zeros((plain.far, plain.far), dtype)
 
     def _is_plug(self, layer: int) -> bool:
@@ -172,30 +174,33 @@ class Part:
 
         ``loads`` (s, 3 nodes of a layer), ``T`` the motions of the last ring by the plug's.
         """
-        active = np.zeros(0, dtype=np.int64)
+        # In the order of elimination, so that those under way are always the first ones.
+        groups = [np.flatnonzero(layers == layer) for layer in self.order]
+        which = np.concatenate([np.zeros(0, dtype=np.int64), *groups])
+        shares = np.zeros((len(which), len(which)))
         ahead = np.zeros((0, self.next.shape[0]), self.dtype)
         own_mids = len(self.unknowns.mid)
-        for layer in self.order:
-            pattern = self.patterns[layer]
-            fresh = np.flatnonzero(layers == layer)
-            if len(active) + len(fresh) == 0:
+        for layer, fresh in zip(self.order, groups, strict=True):
+            pattern, before = self.patterns[layer], len(ahead)
+            count = before + len(fresh)
+            if count == 0:
                 continue
             pivot = self.pivots[layer]
-            rows = np.zeros((len(active) + len(fresh), len(pivot.factor)), self.dtype)
-            if len(active):
-                rows[: len(active), own_mids:] = ahead
+            rows = np.zeros((count, len(pivot.factor)), self.dtype)
+            if before:
+                rows[:before, own_mids:] = ahead
             own = loads[fresh][:, pattern.block_nodes]
             if self._is_plug(layer):
-                rows[len(active) :, :own_mids] = own[:, :own_mids]
-                rows[len(active) :, own_mids:] = loads[fresh][:, -T.shape[0] :] @ T
+                rows[before:, :own_mids] = own[:, :own_mids]
+                rows[before:, own_mids:] = loads[fresh][:, -T.shape[0] :] @ T
             else:
-                rows[len(active) :] = own
+                rows[before:] = own
             pivot.forward(rows)
-            active = np.concatenate([active, fresh])
-            result[np.ix_(active, active)] += rows @ rows.T
+            shares[:count, :count] += rows @ rows.T
             ahead = -(rows @ self.couplings[layer])
-            ahead[len(active) - len(fresh) :] += loads[fresh][:, pattern.far_nodes]
-        return active, ahead
+            ahead[before:] += loads[fresh][:, pattern.far_nodes]
+        result[np.ix_(which, which)] += shares
+        return which, ahead
 
     def _behind(self, layer: int, rings: FloatArray, plug: FloatArray) -> FloatArray | None:
         if self._is_plug(layer):

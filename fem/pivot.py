@@ -22,6 +22,7 @@ class Pivot:
 
     def __init__(self, n: int, dtype: DType = DOUBLE) -> None:
         self.factor = np.empty((n, n), dtype)
+        self._reducer = blas.Reducer(n, self.factor.dtype)
         self.signs: FloatArray | None = None
 
     def factorise(self, A: FloatArray, last: FloatArray) -> None:
@@ -54,7 +55,7 @@ class Pivot:
     def reduce(self, B: FloatArray) -> None:
         """Overwrite B (n, m) with L^-1 B."""
         if self.signs is None:
-            blas.solve_lower(self.factor, B)
+            self._reducer.solve_lower(self.factor, B)
         else:
             B[...] = self.factor.T @ B
 

@@ -18,9 +18,7 @@ class Workspace:
     def __init__(self) -> None:
         self._arrays: dict[str, FloatArray] = {}
 
-    def get(
-        self, name: str, shape: tuple[int, ...], dtype: DType = DOUBLE
-    ) -> FloatArray:
+    def get(self, name: str, shape: tuple[int, ...], dtype: DType = DOUBLE) -> FloatArray:
         """Return an array of this shape; its content is whatever was left in it."""
         size = math.prod(shape)
         held = self._arrays.get(name)
