@@ -134,8 +134,9 @@ def off_by_fe(design: Design, profile: Profile, request: Request) -> Iterator[st
     fit, limit = _judged(design, profile, request)
     if fit is design.fit.fe and (fit.rms_mm > limit or fit.max_mm > WORST * limit):
         yield (
-            f"the shape lies {fit.rms_mm:.2f} mm RMS and {fit.max_mm:.2f} mm at most off the profile "
-            f"by FE, more than {limit:.2f} and {WORST * limit:.2f} mm; take \"optimal\" as `method`"
+            f"by FE the shape lies {fit.rms_mm:.2f} mm RMS and up to {fit.max_mm:.2f} mm off the "
+            f"profile, more than {limit:.2f} and {WORST * limit:.2f} mm; "
+            'take "optimal" as `method`'
         )
 
 

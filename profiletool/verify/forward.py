@@ -14,7 +14,8 @@ from fem.actuator import Actuator
 from fem.errors import BadGeometry, NotConverged
 from fem.mesh import Mesh
 from fem.near import solve_near
-from fem.sensitivity import Rate, Sensitivities, flow_to, sensitivities
+from fem.rates import Rate, Sensitivities, flow_to
+from fem.sensitivity import sensitivities
 from fem.solution import Solution
 from fem.solver import solve
 from profiletool.joints.correction.correct import CannotBend, Iterate

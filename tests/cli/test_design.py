@@ -21,7 +21,7 @@ from tests.cli.inputs import REST, Made, arc, picture, unverified
 def test_the_main_job(samples: Path, tmp_path: Path) -> None:
     result = call("design", samples / "bulb.png", "--method", "paper")
     assert result.exit_code == 6  # within the method's limits, and bent by FE to another shape
-    assert 'off the profile by FE, more than' in result.stderr
+    assert "mm off the profile, more than" in result.stderr
     out = tmp_path / "bulb_design"
     design = check_verified(out, FILES | {"mask.png"}, feasible=False)
     away = [j["number"] for j in design["joints"] if j["alpha_center_deg"] == 90]

@@ -13,7 +13,8 @@ from fem.errors import NotConverged
 from fem.mesh import alike, make_mesh
 from fem.meshsize import DEFAULT_MESH
 from fem.near import between, solve_near
-from fem.sensitivity import flow_to, sensitivities
+from fem.rates import flow_to
+from fem.sensitivity import sensitivities
 from fem.solution import Solution
 from fem.solver import solve
 from fem.transfer import transfer
