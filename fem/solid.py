@@ -74,8 +74,7 @@ def respond(
     mean_dilatation : bool
         Take the volume change from each brick's mean (Simo, Taylor and Pister 1985).
     """
-    _, c, _, L = x.shape
-    q = reference.weights.shape[1]
+    c, q, L = *reference.weights.shape, x.shape[3]
     stretch_z = 2.0 / heights
     # Memory runs (i, column, j, point, layer), so that products see whole matrices.
     gradient = work.get("gradient", (3, c, 3 * q, L))
@@ -92,11 +91,10 @@ def respond(
     P = rubber.stress(k, p, out=np.moveaxis(stresses, 1, 2))
     P[:, :2] *= 0.5 * heights  # the third column's 2 / h and the volume's h / 2 cancel
     across = np.swapaxes(reference.weighted, 1, 2)
-    force = across @ stresses.reshape(3, c, 3 * q, L)
-    state, H = SolidState(energy, force, least), k.H
+    state = SolidState(energy, across @ stresses.reshape(3, c, 3 * q, L), least)
     if stiffness is None:
         return state
-    pairs = reference.pairs
+    H, pairs = k.H, reference.pairs
     if stiffness.dtype == SINGLE:
         k, p, pairs = k.single(), p.astype(SINGLE), reference.single_pairs
     moduli = work.get("tangent", (6, c, 3, 3, q, L), stiffness.dtype)
