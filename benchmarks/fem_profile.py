@@ -34,16 +34,16 @@ class Count:
 
     def __init__(self) -> None:
         self.factorise = self.stiffness = 0.0
-        cholesky, lower, gram = blas.cholesky, blas.Reducer.solve_lower, blas.subtract_gram
+        cholesky, lower, gram = blas.cholesky, blas.solve_lower, blas.subtract_gram
         respond = solid.respond
 
         def counted_cholesky(A: Any) -> bool:
             self.factorise += len(A) ** 3 / 3.0
             return cholesky(A)
 
-        def counted_lower(reducer: Any, U: Any, B: Any) -> None:
+        def counted_lower(U: Any, B: Any) -> None:
             self.factorise += float(len(U)) ** 2 * B.shape[1]
-            lower(reducer, U, B)
+            lower(U, B)
 
         def counted_gram(C: Any, B: Any) -> None:
             self.factorise += float(len(C)) ** 2 * len(B)
@@ -69,7 +69,7 @@ class Count:
 
     @staticmethod
     def _put(functions: Any) -> None:
-        blas.cholesky, blas.Reducer.solve_lower, blas.subtract_gram, solid.respond = functions
+        blas.cholesky, blas.solve_lower, blas.subtract_gram, solid.respond = functions
 
 
 def stage_of(function: Function) -> str | None:

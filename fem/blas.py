@@ -16,14 +16,13 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from importlib import import_module
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import scipy
 
-from fem.arrays import SINGLE, DType, FloatArray
+from fem.arrays import SINGLE, FloatArray
 
 
 @cache
@@ -40,7 +39,6 @@ def _kernel(module: str, name: str, arguments: int) -> Callable[..., None]:
 
 
 _STRIDE = ctypes.c_int(1)
-_BLOCK = 48  # rows of a factor's diagonal blocks
 _FEW = 3  # right sides up to which one at a time is quicker
 _ONE = {"d": ctypes.c_double(1.0), "s": ctypes.c_float(1.0)}
 _MINUS = {"d": ctypes.c_double(-1.0), "s": ctypes.c_float(-1.0)}
@@ -67,38 +65,16 @@ def cholesky(A: FloatArray) -> bool:
     return info.value == 0
 
 
-class Reducer:
-    """Solves with the triangular factors of one size n by products of blocks.
-
-    OpenBLAS solves at less than half the speed at which it multiplies: the diagonal blocks of the
-    factor are inverted, and all else is products.
-    """
-
-    def __init__(self, n: int, dtype: DType) -> None:
-        count = max(1, round(n / _BLOCK))
-        cuts = [round(n * k / count) for k in range(count + 1)]
-        self._blocks = tuple(slice(a, b) for a, b in pairwise(cuts))
-        self._upper = [np.triu(np.ones((b - a, b - a), dtype)) for a, b in pairwise(cuts)]
-
-    def solve_lower(self, U: FloatArray, B: FloatArray) -> None:
-        """Overwrite B (n, m) with U^-T B, for U (n, n) given by its upper triangle."""
-        if B.size == 0:
-            return
-        for own, upper in zip(self._blocks, self._upper, strict=True):
-            inverse = U[own, own] * upper
-            _invert(inverse)
-            right = B[own]
-            if own.start:
-                right -= U[: own.start, own].T @ B[: own.start]
-            right[...] = inverse.T @ right
-
-
-def _invert(U: FloatArray) -> None:
-    """Invert an upper triangular matrix in place."""
-    n, info = ctypes.c_int(len(U)), ctypes.c_int()
-    _kernel("cython_lapack", f"{_letter(U)}trtri", 6)(
-        b"L", b"N", _ref(n), U.ctypes.data, _ref(n), _ref(info)
-    )
+def solve_lower(U: FloatArray, B: FloatArray) -> None:
+    """Overwrite B (n, m) with U^-T B."""
+    if B.size == 0:
+        return
+    # C order is LAPACK's transpose: B^T U^-1 with a lower triangle there.
+    n, m, letter = ctypes.c_int(B.shape[0]), ctypes.c_int(B.shape[1]), _letter(B)
+    _kernel("cython_blas", f"{letter}trsm", 11)(
+        b"R", b"L", b"T", b"N", _ref(m), _ref(n), _ref(_ONE[letter]),
+        U.ctypes.data, _ref(n), B.ctypes.data, _ref(m),
+    )  # fmt: skip
 
 
 def solve_rows(U: FloatArray, rows: FloatArray, transposed: bool) -> None:

@@ -22,7 +22,6 @@ class Pivot:
 
     def __init__(self, n: int, dtype: DType = DOUBLE) -> None:
         self.factor = np.empty((n, n), dtype)
-        self._reducer = blas.Reducer(n, self.factor.dtype)
         self.signs: FloatArray | None = None
 
     def factorise(self, A: FloatArray, last: FloatArray) -> None:
@@ -55,7 +54,7 @@ class Pivot:
     def reduce(self, B: FloatArray) -> None:
         """Overwrite B (n, m) with L^-1 B."""
         if self.signs is None:
-            self._reducer.solve_lower(self.factor, B)
+            blas.solve_lower(self.factor, B)
         else:
             B[...] = self.factor.T @ B
 

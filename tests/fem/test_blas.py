@@ -47,7 +47,7 @@ def test_triangular_solves_and_the_gram_matrix(n: int, dtype: DType) -> None:
     T, close = np.triu(U), 1e5 * np.finfo(dtype).eps
     B, rows = rng.normal(size=(n, 3)).astype(dtype), rng.normal(size=(4, n)).astype(dtype)
     solved = B.copy()
-    blas.Reducer(n, dtype).solve_lower(U, solved)
+    blas.solve_lower(U, solved)
     np.testing.assert_allclose(T.T @ solved, B, atol=close)
     for some in (rows, rows[:1]):  # many at once, and one by one
         forward, backward = some.copy(), some.copy()
@@ -62,8 +62,7 @@ def test_triangular_solves_and_the_gram_matrix(n: int, dtype: DType) -> None:
 
 def test_nothing_to_solve() -> None:
     U, empty = np.eye(2), np.empty((2, 0))
-    blas.Reducer(2, DOUBLE).solve_lower(U, empty)
-    blas.Reducer(0, DOUBLE).solve_lower(np.empty((0, 0)), np.empty((0, 3)))
+    blas.solve_lower(U, empty)
     blas.subtract_gram(np.empty((0, 0)), empty)
     blas.solve_rows(U, np.empty((0, 2)), transposed=True)
     np.testing.assert_array_equal(U, np.eye(2))
