@@ -98,8 +98,22 @@ def rates_by(
 ) -> tuple[Rate, ...]:
     """Differentiate an equilibrium by parameters of the caller's choice.
 
-    Such as `fem.parameters.rubber_constant`, `poisson` and `alpha_center`; all else is as in
-    `sensitivities`.
+    Parameters
+    ----------
+    mesh, x, pressure, threads, extra
+        As in `sensitivities`.
+    parameters : sequence of Parameter
+        Such as `fem.parameters.rubber_constant`, `poisson` and `alpha_center`.
+
+    Returns
+    -------
+    tuple of Rate
+        By each parameter, with angles and volume.
+
+    Raises
+    ------
+    FemError
+        As `sensitivities` does.
     """
     changes = [(parameter,) for parameter in parameters]
     return tuple(_rates(mesh, x, pressure, changes, threads, True, extra)[1:])
