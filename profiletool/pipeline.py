@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from formula.theta import Formula
+from profiletool.errors import Infeasible
 from profiletool.files.formula import formula_for
 from profiletool.joints.again import edited, plan_again
 from profiletool.joints.closest import target_points
@@ -20,6 +21,7 @@ from profiletool.records.picture import Scale
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request
 from profiletool.records.seal import sealed
+from profiletool.records.way import WaysOut
 from profiletool.subject.find import Subject, find_subject
 from profiletool.verdict.draft import Draft, attempt_of
 from profiletool.verdict.holds import holding
@@ -27,6 +29,8 @@ from profiletool.verdict.missed import Missed
 from profiletool.verdict.notes import notes_of
 from profiletool.verdict.reasons import misses_of, reasons_of
 from profiletool.verdict.summary import headline, summary
+from profiletool.verdict.trials import Situation
+from profiletool.verdict.ways import ways_out
 from profiletool.verify.check import Check, check
 from profiletool.verify.errors import with_errors
 from profiletool.verify.forward import FeForwardModel
@@ -58,10 +62,13 @@ class Result(Draft):
         Why the design is infeasible; none where it is feasible.
     misses : tuple of Missed
         Stretches of the profile that the best known shape is far off.
+    ways : WaysOut or None
+        What trials of other options came to; None where the design is feasible.
     """
 
     reasons: tuple[str, ...]
     misses: tuple[Missed, ...]
+    ways: WaysOut | None = None
 
     def __str__(self) -> str:
         """Joints, distances off the profile, verdict and notes."""
@@ -116,13 +123,25 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
     progress = progress or _silent
     progress(0.0)
     subject = find_subject(request, say)
-    attempt = _attempt(request, subject, formula, say, progress)
+    try:
+        attempt = _attempt(request, subject, formula, say, progress)
+    except Infeasible as error:
+        ways = _ways(Situation(request, subject, formula, None), say)
+        raise Infeasible(f"{error}; {ways}") from error
     lower = _lower(attempt)
     if lower is not None:
         say(f"once more below {lower.tube.max_pressure_bar:.2f} bar, where FE is stable")
         second = _attempt(lower, subject, formula, say, progress)
         attempt = second if second.design.verified else attempt
-    return _judged(_with_errors(replace(attempt, request=request)))
+    result = _judged(_with_errors(replace(attempt, request=request)))
+    if not result.reasons:
+        return result
+    fit = result.design.fit
+    reached = (fit.fe or fit.response or fit.formula).rms_mm
+    ways = _ways(Situation(request, subject, formula, reached), say)
+    first = len(result.reasons)
+    notes = (*result.reasons, str(ways), *result.design.warnings[first:])
+    return replace(result, ways=ways, design=sealed(replace(result.design, warnings=notes)))
 
 
 def run_again(
@@ -170,6 +189,15 @@ def run_again(
     attempt = replace(attempt, design=replace(attempt.design, source=source, method=design.method))
     checked = _verified(attempt.design, profile, say, progress)
     return _judged(_with_errors(holding(replace(attempt, design=checked.design, check=checked))))
+
+
+def _ways(at: Situation, say: Callable[[str], None]) -> WaysOut:
+    """Try other options; finite elements check the first that works where they are asked for."""
+
+    def bend(request: Request, subject: Subject) -> Draft:
+        return _attempt(request, subject, formula_for(request), say, _silent)
+
+    return ways_out(at, say, bend if at.request.verify else None)
 
 
 def _attempt(

@@ -101,9 +101,10 @@ def conclude(result: Result, folder: Path, say: Callable[[str], None]) -> None:
         say(f"note: {warning}")
     say(f"written: {folder}")
     if result.reasons:
+        way = "" if result.ways is None else f"; {result.ways}"
         raise Infeasible(
             f"no design within the limits ({'; '.join(result.reasons[:2])}); "
-            f"the best attempt is in {folder}, marked infeasible"
+            f"the best attempt is in {folder}, marked infeasible{way}"
         )
     if result.check is not None and result.check.failure is not None:
         raise NotVerified(

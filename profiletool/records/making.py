@@ -61,6 +61,19 @@ def request_of(file: Path, values: Mapping[str, Any], formula: Formula | None = 
     return Request(file, **parts, **own)
 
 
+def changed_request(request: Request, values: Mapping[str, Any]) -> Request:
+    """Give a request with other values, by field name."""
+    paths = {row.field: row.path for row in DESIGN}
+    for name, value in values.items():
+        holder, _, field = paths[name].rpartition(".")
+        if holder:
+            part = replace(getattr(request, holder), **{field: value})
+            request = replace(request, **{holder: part})
+        else:
+            request = replace(request, **{field: value})
+    return request
+
+
 def request_again(design: Design, profile: Profile, refine: bool) -> Request:
     """Ask for a design anew: its own tube, model and errors of the build, along its profile.
 
