@@ -229,7 +229,8 @@ def _lower(attempt: Draft) -> Request | None:
     run = None if attempt.check is None else attempt.check.run
     found = None if run is None else run.verification
     ended = None if found is None else found.critical or found.ahead
-    if ended is None or request.method != "optimal" or not request.refine:
+    given = request.tube.pressure_bar is not None
+    if ended is None or given or request.method != "optimal" or not request.refine:
         return None
     bar = _STABLE_SHARE * ended.pressure_bar
     return replace(request, tube=replace(request.tube, max_pressure_bar=bar))

@@ -71,12 +71,7 @@ def optimal_plan(
         When no joints follow the profile even roughly.
     """
     model = model_of(request, formula)
-    if request.tube.max_pressure_bar < BAR_PER_MPA * model.pressure[0]:
-        raise UsageError(
-            f"`max_pressure_bar` {request.tube.max_pressure_bar:g} bar is less than the "
-            f"{BAR_PER_MPA * model.pressure[0]:g} bar from which on the joints are known by the "
-            f"{_by(model)}"
-        )
+    _check_pressures(request.tube, model)
     posed, choice, notes, hopeless = _standing(request, profile, model, say, forward)
     bent = model.shape(posed.chain, posed.pressure, posed.pose, profile.sign)
     return Plan(
@@ -129,9 +124,25 @@ def _standing(
             say(notes[-1])
             posed = by_model(choice)
             spec = replace(spec, max_pressure_bar=BAR_PER_MPA * _AGAIN * problem.reached)
-            if problem.reached <= choice.limits.pressure[0]:
+            if problem.reached <= choice.limits.pressure[0]:  # as where the pressure is given
                 break
     return posed, choice, tuple(notes), ""
+
+
+def _check_pressures(spec: TubeSpec, model: Model) -> None:
+    """Refuse pressures that the joints are not known for."""
+    low, high = (BAR_PER_MPA * pressure for pressure in model.pressure)
+    if spec.max_pressure_bar < low:
+        raise UsageError(
+            f"`max_pressure_bar` {spec.max_pressure_bar:g} bar is less than the {low:g} bar from "
+            f"which on the joints are known by the {_by(model)}"
+        )
+    given = spec.pressure_bar
+    if given is not None and not low - 1e-9 <= given <= high + 1e-9:
+        raise UsageError(
+            f"`pressure_bar` {given:g} bar is not within the {low:g} to {high:g} bar that the "
+            f"joints are known for by the {_by(model)}"
+        )
 
 
 def model_of(request: Request, formula: Formula) -> Model:

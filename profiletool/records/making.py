@@ -12,7 +12,13 @@ from profiletool.errors import UsageError
 from profiletool.records.built import BuildErrors, build_errors
 from profiletool.records.model import ModelInputs, check_model
 from profiletool.records.options import DESIGN, MODEL, Option
-from profiletool.records.request import Look, Request, ScaleRequest, TubeSpec
+from profiletool.records.request import (
+    PRESSURE_STEP_BAR,
+    Look,
+    Request,
+    ScaleRequest,
+    TubeSpec,
+)
 
 if TYPE_CHECKING:
     from formula.theta import Formula
@@ -118,9 +124,24 @@ def check_request(request: Request) -> None:
         raise UsageError(f"`pitch_mm` must be more than the thread, {tube.thread_mm:g} mm")
     if tube.wall_mm >= tube.radius_mm:
         raise UsageError("`wall_mm` must be less than half of `outer_diameter_mm`")
+    if tube.pressure_bar is not None:
+        _check_pressure(tube.pressure_bar, tube.max_pressure_bar)
     if not 0.0 <= request.start_pct < request.end_pct <= 100.0:
         raise UsageError("`start_pct` and `end_pct` must be percentages, the first one the lower")
     check_model(request.model)
+
+
+def _check_pressure(pressure_bar: float, most_bar: float) -> None:
+    if pressure_bar > most_bar:
+        raise UsageError(
+            f"`pressure_bar` {pressure_bar:g} bar is more than the highest, {most_bar:g} bar: "
+            "lower it, or raise `max_pressure_bar` as well"
+        )
+    steps = pressure_bar / PRESSURE_STEP_BAR
+    if abs(steps - round(steps)) > 1e-6:
+        raise UsageError(
+            f"`pressure_bar` comes in steps of {PRESSURE_STEP_BAR:g} bar, not {pressure_bar:g}"
+        )
 
 
 def model_of(values: Mapping[str, Any], base: ModelInputs) -> ModelInputs:

@@ -178,6 +178,12 @@ DESIGN = (
         "--pitch", "tube.pitch_mm", _MM, "Mesh pitch of the gauze, mm.", above=0.0, main=True
     ),
     Option(
+        "--pressure", "tube.pressure_bar", _BAR,
+        "The operating pressure, as of one regulator for several fingers, bar, in steps of 0.01 "
+        "(default: what suits best, up to --max-pressure).",
+        above=0.0, absent="what suits best",
+    ),
+    Option(
         "--max-pressure", "tube.max_pressure_bar", _BAR, "Highest pressure, bar.", above=0.0,
         main=True,
     ),
@@ -265,7 +271,7 @@ DESIGN = (
 MODEL = tuple(row for row in DESIGN if row.path.startswith("model."))
 # Fields of other records and commands that messages name.
 _OTHERS = {
-    "kerf_mm": "--kerf", "out": "--out", "force": "--force", "pressure_bar": "--pressure",
+    "kerf_mm": "--kerf", "out": "--out", "force": "--force",
     "alpha_center_deg": "--alpha-center", "base": "--from", "runs": "--runs",
     "scheduler": "--scheduler", "workers": "--workers", "alpha_deg": "--alpha",
     "openF_mm": "--openF", "theta_deg": "--theta", "tip_mm": "--tip", "at_bar": "--at",

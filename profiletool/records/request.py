@@ -44,6 +44,7 @@ class ScaleRequest:
     camera_distance_mm: float | None = None
 
 
+PRESSURE_STEP_BAR = 0.01  # what a gauge can be set to
 INTERFERENCE_MM = 0.3  # how deep a straight piece of tube may lie in the object as drawn
 
 
@@ -62,6 +63,8 @@ class TubeSpec:
         How often the gauze is rolled around the tube.
     max_pressure_bar, max_length_mm : float
         Highest pressure; longest tube.
+    pressure_bar : float or None
+        The operating pressure where it is given; None for what suits best, up to the highest.
     rubber : RubberLaw or None
         None for the paper's silicone.
     clamp_mm : float or None
@@ -78,6 +81,7 @@ class TubeSpec:
     max_length_mm: float = 250.0
     rubber: RubberLaw | None = None
     clamp_mm: float | None = None
+    pressure_bar: float | None = None
 
     @property
     def clamp(self) -> Clamp:

@@ -6,7 +6,7 @@ Every family changes one thing, by more and more. A rough search says how much o
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -110,17 +110,19 @@ def alone(at: Situation) -> Iterator[Family]:
     if request.method == "paper":
         yield Family("the optimal method", (Trial({"method": "optimal"}, 0.0),))
     if request.joints is not None:
-        counts = [n for k in range(1, 9) for n in (request.joints + k, request.joints - k) if n > 0]
-        several = (Trial({"joints": n}, 0.05 * abs(n - request.joints)) for n in counts)
-        yield Family("other numbers of joints", tuple(several))
+        more = range(request.joints + 1, request.joints + 9)
+        yield Family("more joints", _each("joints", request.joints, more))
+        yield Family(
+            "fewer joints", _each("joints", request.joints, range(request.joints - 1, 0, -1))
+        )
     if request.tolerance_mm is not None and at.reached_mm is not None:
         enough = math.ceil(20.0 * at.reached_mm + 0.5) / 20.0
         much = min(enough / request.tolerance_mm - 1.0, 1.0)
         yield Family("what is reached as the tolerance", (Trial({"tolerance_mm": enough}, much),))
     length = math.ceil((at.subject.profile.length_mm + _ROOM_MM) / 10.0) * 10.0
     if spec.max_length_mm < length <= _MOST_LENGTH_MM:
-        longer = Trial({"max_length_mm": length}, length / spec.max_length_mm - 1.0)
-        yield Family(f"a tube of up to {length:g} mm", (longer,))
+        longer = _each("max_length_mm", spec.max_length_mm, [length])
+        yield Family(f"a tube of up to {length:g} mm", longer)
     yield from stretches(at)
     yield from _others(at)
 
@@ -131,10 +133,21 @@ def _others(at: Situation) -> Iterator[Family]:
         other = "right" if request.side == "left" else "left"
         yield Family(f"the {other} side", (Trial({"side": other}, _SIDE),))
     yield slimmer(at)
+    given, most_bar = spec.pressure_bar, spec.max_pressure_bar
+    if given is not None:
+        steps = [round(0.1 * k, 1) for k in range(1, 20)]
+        higher = [p for p in (round(given + step, 2) for step in steps) if p <= most_bar]
+        lower = [p for p in (round(given - step, 2) for step in steps) if p >= 0.5 * given]
+        yield Family("higher pressures", _each("pressure_bar", given, higher))
+        yield Family("lower pressures", _each("pressure_bar", given, lower))
+        return
     most = math.floor(20.0 * BAR_PER_MPA * model_of(request, at.formula).pressure[1]) / 20.0
-    if most > spec.max_pressure_bar + 1e-6:
-        more = Trial({"max_pressure_bar": most}, most / spec.max_pressure_bar - 1.0)
-        yield Family(f"pressures up to {most:g} bar", (more,))
+    if most > most_bar + 1e-6:
+        yield Family(f"pressures up to {most:g} bar", _each("max_pressure_bar", most_bar, [most]))
+
+
+def _each(field: str, now: float, values: Iterable[float]) -> tuple[Trial, ...]:
+    return tuple(Trial({field: value}, abs(value / now - 1.0)) for value in values)
 
 
 def stretches(at: Situation) -> Iterator[Family]:
