@@ -19,10 +19,10 @@ from profiletool.joints.correction.by_model import BendingForwardModel
 from profiletool.joints.correction.correct import (
     CannotBend,
     ForwardModel,
-    StepSizes,
     correct,
 )
 from profiletool.joints.correction.parameters import PosedChain, parameters_of
+from profiletool.joints.correction.sizes import StepSizes
 from profiletool.joints.expected import Aim, ErrorSizes, Expected, error_sizes
 from profiletool.joints.layout import Layout
 from profiletool.joints.optimal.choose import TOLERANCE_MM, Choice, ChoiceOptions, choose
@@ -31,7 +31,7 @@ from profiletool.profile.curve import points_at
 from profiletool.records.design import AWAY_DEG, TOWARD_DEG, Joint
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
-from profiletool.records.request import Request, TubeSpec
+from profiletool.records.request import PLACE_STEP_MM, Request, TubeSpec
 from profiletool.records.rubber import law_of
 from profiletool.records.units import BAR_PER_MPA, FloatArray
 
@@ -187,11 +187,12 @@ def _aim(request: Request, model: Model) -> Aim:
 
 def _step_sizes(request: Request) -> StepSizes:
     spec = request.tube
-    alpha = request.alpha_step_deg
+    alpha, place = request.alpha_step_deg, request.place_step_mm
     return StepSizes(
         alpha=spec.thread_rad if alpha is None else float(np.radians(alpha)),
-        place=request.place_step_mm,
+        place=PLACE_STEP_MM if place is None else place,
         pressure=PRESSURE_STEP,
+        mesh=spec.pitch_mm if place is None else None,
     )
 
 

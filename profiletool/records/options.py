@@ -227,8 +227,10 @@ DESIGN = (
         absent="one thread",
     ),
     Option(
-        "--place-step", "place_step_mm", _MM, "Step of the joints' places, mm (0: any; optimal).",
-        least=0.0,
+        "--place-step", "place_step_mm", _MM,
+        "Step of the joints' places, mm (default: the gauze's pitch where that costs less than "
+        "0.1 mm, else 1; 0: any; optimal).",
+        least=0.0, absent="the gauze's pitch, or 1 mm",
     ),
     Option(
         "--objective", "objective", _choice("built", "nominal"),

@@ -45,6 +45,7 @@ class ScaleRequest:
 
 
 PRESSURE_STEP_BAR = 0.01  # what a gauge can be set to
+PLACE_STEP_MM = 1.0  # what a ruler has
 INTERFERENCE_MM = 0.3  # how deep a straight piece of tube may lie in the object as drawn
 
 
@@ -163,8 +164,9 @@ class Request:
         Whether the base may leave the profile's start tangent.
     alpha_step_deg : float or None
         Step of alpha_closed; None for one thread, 0 for any value.
-    place_step_mm : float
-        Step of the joints' places; 0 for any value.
+    place_step_mm : float or None
+        Step of the joints' places; 0 for any value, None for the gauze's pitch where that costs
+        little, else `PLACE_STEP_MM`.
     tube : TubeSpec
     formula : Path or None
         A formula file, or the name of one that comes along; None for the paper's.
@@ -194,7 +196,7 @@ class Request:
     interference_mm: float = INTERFERENCE_MM
     base_free: bool = False
     alpha_step_deg: float | None = None
-    place_step_mm: float = 1.0
+    place_step_mm: float | None = None
     tube: TubeSpec = field(default_factory=TubeSpec)
     formula: Path | None = None
     extrapolate: bool = False
