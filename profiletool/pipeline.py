@@ -8,7 +8,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from formula.theta import Formula
-from profiletool.errors import Infeasible
 from profiletool.files.formula import formula_for
 from profiletool.joints.again import edited, plan_again
 from profiletool.joints.closest import target_points
@@ -23,6 +22,7 @@ from profiletool.records.request import Request
 from profiletool.records.seal import sealed
 from profiletool.records.way import WaysOut
 from profiletool.subject.find import Subject, find_subject
+from profiletool.verdict.around import with_neighbours
 from profiletool.verdict.draft import Draft, attempt_of
 from profiletool.verdict.holds import holding
 from profiletool.verdict.missed import Missed
@@ -30,7 +30,7 @@ from profiletool.verdict.notes import notes_of
 from profiletool.verdict.reasons import misses_of, reasons_of
 from profiletool.verdict.summary import headline, summary
 from profiletool.verdict.trials import Situation
-from profiletool.verdict.ways import ways_out
+from profiletool.verdict.ways import refused, ways_out
 from profiletool.verify.check import Check, check
 from profiletool.verify.errors import with_errors
 from profiletool.verify.forward import FeForwardModel
@@ -123,22 +123,20 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
     progress = progress or _silent
     progress(0.0)
     subject = find_subject(request, say)
-    try:
+    bend = _bend(say) if request.verify else None
+    with refused(Situation(request, subject, formula, None), say, bend):
         attempt = _attempt(request, subject, formula, say, progress)
-    except Infeasible as error:
-        ways = _ways(Situation(request, subject, formula, None), say)
-        raise Infeasible(f"{error}; {ways}") from error
     lower = _lower(attempt)
     if lower is not None:
         say(f"once more below {lower.tube.max_pressure_bar:.2f} bar, where FE is stable")
         second = _attempt(lower, subject, formula, say, progress)
         attempt = second if second.design.verified else attempt
-    result = _judged(_with_errors(replace(attempt, request=request)))
+    result = _judged(with_neighbours(_with_errors(replace(attempt, request=request))))
     if not result.reasons:
         return result
     fit = result.design.fit
     reached = (fit.fe or fit.response or fit.formula).rms_mm
-    ways = _ways(Situation(request, subject, formula, reached), say)
+    ways = ways_out(Situation(request, subject, formula, reached), say, bend)
     first = len(result.reasons)
     notes = (*result.reasons, str(ways), *result.design.warnings[first:])
     return replace(result, ways=ways, design=sealed(replace(result.design, warnings=notes)))
@@ -191,13 +189,13 @@ def run_again(
     return _judged(_with_errors(holding(replace(attempt, design=checked.design, check=checked))))
 
 
-def _ways(at: Situation, say: Callable[[str], None]) -> WaysOut:
-    """Try other options; finite elements check the first that works where they are asked for."""
+def _bend(say: Callable[[str], None]) -> Callable[[Request, Subject], Draft]:
+    """Give what designs by finite elements for a trial of other options."""
 
     def bend(request: Request, subject: Subject) -> Draft:
         return _attempt(request, subject, formula_for(request), say, _silent)
 
-    return ways_out(at, say, bend if at.request.verify else None)
+    return bend
 
 
 def _attempt(
@@ -210,7 +208,7 @@ def _attempt(
     profile = subject.profile
     if request.method == "optimal":
         forward = _forward(request, progress) if request.verify and request.refine else None
-        plan = optimal_plan(request, profile, formula, say, forward)
+        plan = optimal_plan(request, profile, formula, say, forward, neighbours=True)
     else:
         plan = paper_plan(request, profile, formula, say)
     attempt = attempt_of(request, subject, formula, plan)

@@ -115,10 +115,10 @@ def conclude(result: Result, folder: Path, say: Callable[[str], None]) -> None:
 
 def _doubted(unsure: Unsure, name: str) -> NoObject:
     """Draw what the object could be, and say where: never over another file."""
-    from profiletool import outputs
     from profiletool.files import write
+    from profiletool.report.candidates import draw_candidates
 
     names = itertools.chain([name], (f"{name}_{k}" for k in itertools.count(2)))
     file = next(file for one in names if not (file := Path(f"{one}.png")).exists())
-    write.write_file(file, outputs.candidates_png(unsure), force=False)
+    write.write_file(file, draw_candidates(unsure.rgb, unsure.candidates), force=False)
     return NoObject(f"{unsure}; {file} shows what it could be")

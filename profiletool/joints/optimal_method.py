@@ -18,6 +18,7 @@ from profiletool.joints.bounds import PRESSURE_STEP, Limits
 from profiletool.joints.correction.by_model import BendingForwardModel
 from profiletool.joints.correction.correct import (
     CannotBend,
+    Corrected,
     ForwardModel,
     correct,
 )
@@ -46,6 +47,8 @@ def optimal_plan(
     formula: Formula,
     say: Callable[[str], None],
     forward: ForwardModel[S] | None = None,
+    *,
+    neighbours: bool = False,
 ) -> Plan:
     """Choose all joints at once, go to numbers that can be built, and correct them.
 
@@ -60,6 +63,8 @@ def optimal_plan(
     forward : ForwardModel, optional
         Of the correction, such as finite elements of the whole actuator; by default the model
         that the joints are chosen by.
+    neighbours : bool
+        Whether the choice tells of its neighbours, too; see `Choice`.
 
     Raises
     ------
@@ -72,7 +77,7 @@ def optimal_plan(
     """
     model = model_of(request, formula)
     _check_pressures(request.tube, model)
-    posed, choice, notes, hopeless = _standing(request, profile, model, say, forward)
+    posed, choice, notes, hopeless = _standing(request, profile, model, say, forward, neighbours)
     bent = model.shape(posed.chain, posed.pressure, posed.pose, profile.sign)
     return Plan(
         layout=_layout(posed, choice, bent, model, formula),
@@ -92,6 +97,7 @@ def _standing(
     model: Model,
     say: Callable[[str], None],
     forward: ForwardModel[S] | None,
+    neighbours: bool,
 ) -> tuple[PosedChain, Choice, tuple[str, ...], str]:
     """Choose and correct joints; where the forward model cannot bend them, again at less pressure.
 
@@ -108,7 +114,7 @@ def _standing(
 
     spec, notes = request.tube, list[str]()
     for _ in range(_CHOICES):
-        choice = _chosen(request, profile, model, spec)
+        choice = _chosen(request, profile, model, spec, neighbours)
         say(
             f"joints: {len(choice.chain.openF)} at {BAR_PER_MPA * choice.pressure:.2f} bar, "
             f"{choice.misfit.rms_mm:.2f} mm RMS off the profile by the {_by(model)}"
@@ -160,13 +166,16 @@ def _by(model: Model) -> str:
     return "joint response" if isinstance(model, Response) else "formula"
 
 
-def _chosen(request: Request, profile: Profile, model: Model, spec: TubeSpec) -> Choice:
+def _chosen(
+    request: Request, profile: Profile, model: Model, spec: TubeSpec, neighbours: bool
+) -> Choice:
     options = ChoiceOptions(
         tolerance_mm=request.tolerance_mm or TOLERANCE_MM,
         interference_mm=request.interference_mm,
         count=request.joints,
         base_free=request.base_free,
         sizes=_sizes(request),
+        neighbours=neighbours,
     )
     try:
         return choose(profile, model, spec, options)
@@ -210,20 +219,22 @@ def corrected(
     say: Callable[[str], None],
 ) -> PosedChain:
     """Correct an actuator by a forward model, in numbers that can be built."""
+    return correction(request, forward, profile, model, start, say).best.posed
+
+
+def correction(
+    request: Request,
+    forward: ForwardModel[S],
+    profile: Profile,
+    model: Model,
+    start: tuple[PosedChain, Limits],
+    say: Callable[[str], None],
+) -> Corrected[S]:
+    """Correct an actuator as `corrected`, with the state that it was left in."""
     posed, limits = start
-    parameters = parameters_of(posed.chain, profile, limits)
-    vector = parameters.pack(posed)
-    found = correct(
-        forward,
-        model,
-        parameters,
-        vector,
-        profile,
-        _step_sizes(request),
-        _aim(request, model),
-        say,
-    )
-    return found.best.posed
+    parameters, steps = parameters_of(posed.chain, profile, limits), _step_sizes(request)
+    vector, aim = parameters.pack(posed), _aim(request, model)
+    return correct(forward, model, parameters, vector, profile, steps, aim, say)
 
 
 def _layout(

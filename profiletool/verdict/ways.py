@@ -7,9 +7,10 @@ much is tried, whatever the time: the same input ends in the same words.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 
-from profiletool.errors import ProfiletoolError
+from profiletool.errors import Infeasible, ProfiletoolError
 from profiletool.joints.optimal_method import optimal_plan
 from profiletool.joints.paper_method import paper_plan
 from profiletool.records.request import Request
@@ -21,8 +22,9 @@ from profiletool.verdict.reasons import misses_of, reasons_of
 from profiletool.verdict.trials import Family, Situation, Trial, alone, promising, together
 from profiletool.verify.cautions import strained
 
-_MOST_CHOICES = 4  # of joints, by the model that they are chosen by
+_MOST_CHOICES = 4  # of joints until one works, by the model that they are chosen by
 _MOST_WAYS = 2
+_AFTER = 1  # choices that are left once one works
 
 Say = Callable[[str], None]
 Bend = Callable[[Request, Subject], Draft]  # design and finite elements, as for any request
@@ -49,6 +51,20 @@ def ways_out(at: Situation, say: Say, bend: Bend | None) -> WaysOut:
     return WaysOut((), tuple(tried))
 
 
+@contextmanager
+def refused(at: Situation, say: Say, bend: Bend | None) -> Iterator[None]:
+    """Try other options where there is not even an attempt, and add them to the error.
+
+    Raises
+    ------
+    Infeasible
+    """
+    try:
+        yield
+    except Infeasible as error:
+        raise Infeasible(f"{error}; {ways_out(at, say, bend)}") from error
+
+
 def _worked(
     at: Situation, families: tuple[Family, ...], say: Say, bend: Bend | None
 ) -> tuple[Way, ...]:
@@ -57,19 +73,20 @@ def _worked(
     A family is searched roughly once its least change is the least of all.
     """
     ways: list[Way] = []
-    left, searched, choices = [f for f in families if f.trials], list[str](), 0
-    while left and choices < _MOST_CHOICES and len(ways) < _MOST_WAYS:
+    left, searched, choices = [f for f in families if f.trials], list[str](), _MOST_CHOICES
+    while left and choices and len(ways) < _MOST_WAYS:
         family = min(left, key=lambda one: one.trials[0].much)
         left.remove(family)
         if family.what not in searched:
             searched.append(family.what)
             rest = promising(at, family).trials
         else:
-            choices += 1
+            choices -= 1
             way = _way(at, family.trials[0], None if ways else bend)
             if way is not None:
                 say(str(way))
                 ways.append(way)
+                choices = min(choices, _AFTER)
                 continue
             rest = family.trials[1:]
         if rest:
