@@ -19,6 +19,7 @@ from profiletool.report.expectation import expectation
 from profiletool.report.figure import svg
 from profiletool.report.film import Film, film_of, still_of
 from profiletool.report.markup import Markup, adopted, joined, pairs, tag, text
+from profiletool.report.neighbours import neighbours
 from profiletool.report.plots import theta_figure
 from profiletool.report.stage import controls, legend, readout, stage
 from profiletool.report.steps import steps
@@ -90,6 +91,9 @@ def _sections(dossier: Dossier, film: Film) -> list[_Section]:
             f"{scene.by} predicts it, for every number of joints and every pressure."
         )
         parts.append(_Section("trade-off", "More joints, more pressure", _plot(figure, "to", said)))
+    if design.neighbours:
+        told = neighbours(design, dossier.request)
+        parts.append(_Section("neighbours", "Neighbours of this design", told))
     parts.append(_Section("build", "How to build it", _build(dossier)))
     if design.trim:
         parts.append(

@@ -1,8 +1,8 @@
 """The neighbours of a chosen design: what one joint fewer, one more, or less pressure would give.
 
-All are by the model that joints are chosen by. Finite elements bend and correct the one at less
-pressure where they verified the design: its state lies near the design's own, so that takes some
-seconds. Other numbers of joints would take the path from rest, as long as the design itself.
+All are by the model that joints are chosen by. Where that says that less pressure will do, and
+finite elements verified the design, they correct this neighbour too: its state lies near the
+design's own, so that takes some seconds. Other numbers of joints would take the path from rest.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from profiletool.joints.optimal_method import correction
 from profiletool.records.neighbour import Neighbour
 from profiletool.records.units import BAR_PER_MPA
 from profiletool.verdict.draft import Draft
+from profiletool.verdict.trials import limit_mm
 from profiletool.verify.forward import FeForwardModel
 from profiletool.verify.run import Run
 
@@ -36,8 +37,8 @@ def _neighbours(attempt: Draft) -> Iterator[Neighbour]:
     run = attempt.check.run if attempt.check is not None and attempt.design.verified else None
     for what, polished in () if choice is None else choice.neighbours:
         found = _by_model(what, polished, attempt)
-        many = found.joints == len(attempt.design.joints)
-        if what == "lower pressure" and many and run is not None and attempt.request.refine:
+        near = found.rms_mm <= limit_mm(attempt.request, attempt.profile)
+        if what == "lower pressure" and near and run is not None and attempt.request.refine:
             found = _by_fe(found, polished, attempt, run)
         yield found
 

@@ -14,7 +14,7 @@ from profiletool.joints.optimal.polish import Goal, Polished, polish
 from profiletool.joints.optimal.search import SearchResult
 
 RUNS, QUICK = 12, 4  # steps of a polish, and of one that only tells whether it is worth it
-_LOWER = 0.85  # of the pressure: a neighbour's
+_LOWER = 0.9  # of the pressure: a neighbour's
 
 
 def score_of(polished: Polished, goal: Goal) -> float:
@@ -53,17 +53,13 @@ def _starts(searches: list[SearchResult], goal: Goal, joints: int) -> list[tuple
 def around(
     best: Polished, searches: list[SearchResult], model: Model, goal: Goal
 ) -> Iterator[tuple[str, Polished]]:
-    """Polish the best path with one joint fewer, one more, and with less pressure."""
+    """Polish the best path with one joint fewer, one more, and the chosen one at less pressure."""
     count, (low, _) = len(best.posed.chain.openF), goal.limits.pressure
-    lower = replace(goal, limits=replace(goal.limits, pressure=(low, _LOWER * best.posed.pressure)))
     most = min(one.cost.shape[1] for one in searches)
-    for what, other, numbers in (
-        ("one joint fewer", goal, (count - 1,)),
-        ("one joint more", goal, (count + 1,)),
-        # Less pressure bends less: it may take more joints.
-        ("lower pressure", lower, (count, count + 1, count + 2)),
-    ):
-        known = (n for n in numbers if 1 <= n <= most and _starts(searches, other, n))
-        joints = next(known, None)
-        if joints is not None:
-            yield what, best_of(searches, model, other, joints, rivals=1)
+    for what, joints in (("one joint fewer", count - 1), ("one joint more", count + 1)):
+        if 1 <= joints <= most and _starts(searches, goal, joints):
+            yield what, best_of(searches, model, goal, joints, rivals=1)
+    pressure = _LOWER * best.posed.pressure
+    if pressure > low:
+        lower = replace(goal, limits=replace(goal.limits, pressure=(low, pressure)))
+        yield "lower pressure", polish(replace(best.posed, pressure=pressure), model, lower)
