@@ -106,4 +106,4 @@ def _again(
     write.write_folder(folder, files, asked.force)
     text = files["design.json"].decode() if asked.as_json else joint_table(result.design)
     typer.echo(text, nl=False)
-    conclude(result, folder, say)
+    conclude(result, folder, say, name)

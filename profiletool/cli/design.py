@@ -90,8 +90,19 @@ def design(
 with_signature(design, parameters_of(design), parameters_of_rows(DESIGN), parameters_of(Delivery))
 
 
-def conclude(result: Result, folder: Path, say: Callable[[str], None]) -> None:
+_AS = {"edited": " as it was changed", "report": " as it is", "refined": " as it was refined"}
+_CHOOSE = "design chooses joints anew"
+_ADVICE = {
+    "edited": f"refine lets finite elements correct it, and {_CHOOSE}",
+    "report": f"refine lets finite elements correct it, and {_CHOOSE}",
+    "refined": f"its number of joints and their cuts stay as they are: {_CHOOSE}",
+}
+
+
+def conclude(result: Result, folder: Path, say: Callable[[str], None], again: str = "") -> None:
     """Print the notes, and end with the exit code of what is wrong with the design.
+
+    ``again`` is the command that took a design up again: it looked for no better one.
 
     Raises
     ------
@@ -101,6 +112,11 @@ def conclude(result: Result, folder: Path, say: Callable[[str], None]) -> None:
         say(f"note: {warning}")
     say(f"written: {folder}")
     if result.reasons:
+        if again:
+            raise Infeasible(
+                f"the design{_AS[again]} is beyond the limits ({'; '.join(result.reasons[:2])}); "
+                f"it is in {folder}, marked infeasible; {_ADVICE[again]}"
+            )
         way = "" if result.ways is None else f"; {result.ways}"
         raise Infeasible(
             f"no design within the limits ({'; '.join(result.reasons[:2])}); "
