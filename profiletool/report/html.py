@@ -19,6 +19,7 @@ from profiletool.report.expectation import expectation
 from profiletool.report.figure import svg
 from profiletool.report.film import Film, film_of, still_of
 from profiletool.report.markup import Markup, adopted, joined, pairs, tag, text
+from profiletool.report.measured import measured
 from profiletool.report.neighbours import neighbours
 from profiletool.report.plots import theta_figure
 from profiletool.report.stage import controls, legend, readout, stage
@@ -105,7 +106,7 @@ def _sections(dossier: Dossier, film: Film) -> list[_Section]:
     if design.sensitivity:
         parts.append(_Section("sensitivity", "What small errors do", sensitivity_table(design)))
     told = provenance(design, found, dossier.options)
-    parts.append(_Section("provenance", "Where this comes from", told))
+    parts.append(_Section("provenance", "Where this comes from", joined((told, measured()))))
     return parts
 
 

@@ -129,9 +129,7 @@ def test_no_attempt_at_all_is_refused_with_what_was_tried(monkeypatch: pytest.Mo
         raise Infeasible("no joints follow")
 
     monkeypatch.setattr("profiletool.pipeline.optimal_plan", fails)
-    with pytest.raises(
-        Infeasible, match="no joints follow; nothing that was tried works"
-    ):
+    with pytest.raises(Infeasible, match="no joints follow; nothing that was tried works"):
         design(DrawnLine(S_CURVE, False), verify=False)
 
 
