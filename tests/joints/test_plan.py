@@ -67,7 +67,7 @@ def test_angles_of_a_known_shape(sign: float) -> None:
     assert angles(shape, chain) == pytest.approx(sign * turns, abs=1e-9)
 
 
-@pytest.mark.parametrize("method", ["optimal", "paper"])
+@pytest.mark.parametrize("method", [pytest.param("optimal", marks=pytest.mark.slow), "paper"])
 def test_a_given_pressure_is_kept(samples: Path, method: str) -> None:
     asked = {"pressure_bar": 0.77, "method": method, "verify": False}
     result = run(request_of(samples / "finger_rest.csv", asked), silent)
@@ -94,6 +94,7 @@ def test_neighbours_are_told_with_the_choice(result: Result) -> None:
     assert known["one joint fewer"].rms_mm > chosen.rms_mm
 
 
+@pytest.mark.slow
 def test_places_fall_on_whole_meshes_where_that_costs_little(result: Result) -> None:
     design = result.design
     assert off_mesh(design.joints, design.gauze) == ()

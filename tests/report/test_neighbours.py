@@ -41,9 +41,8 @@ def test_the_rule_is_that_of_what_was_asked(design: Design) -> None:
 
 def test_what_was_measured_is_what_the_guide_says() -> None:
     page = str(measured())
-    guide = " ".join(
-        (Path(__file__).parents[2] / "docs" / "measured.md").read_text("utf-8").split()
-    )
+    root = Path(__file__).parents[2]
+    guide = " ".join((root / "docs" / "measured.md").read_text("utf-8").split())
     for fact in ("0 to 100°", "11 mm RMS", "18.7°", "50.5°", "59.3°", "Beyond 1.5 bar"):
         assert fact in page
         assert fact in guide
