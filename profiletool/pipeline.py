@@ -151,6 +151,7 @@ def run_again(
     *,
     edit: Edit | None = None,
     refine: bool = False,
+    pressure_bar: float | None = None,
 ) -> Result:
     """Take a design up again: change or correct it where asked, verify it and judge it anew.
 
@@ -166,7 +167,9 @@ def run_again(
     edit : Edit, optional
         A change by hand.
     refine : bool
-        Whether finite elements correct the joints, in whole threads and millimetres.
+        Whether finite elements correct the joints, in numbers that can be built.
+    pressure_bar : float, optional
+        That they are to work at, then.
 
     Raises
     ------
@@ -175,7 +178,7 @@ def run_again(
         bends out of the plane.
     """
     design = design if edit is None else edited(design, edit)
-    request = request_again(design, profile, refine)
+    request = request_again(design, profile, refine, pressure_bar)
     check_request(request)
     source = design.source
     subject = Subject(None, None, Scale(source.mm_per_px or 1.0, "vector"), None, profile)

@@ -90,7 +90,7 @@ def design(
 with_signature(design, parameters_of(design), parameters_of_rows(DESIGN), parameters_of(Delivery))
 
 
-_AS = {"edited": " as it was changed", "report": " as it is", "refined": " as it was refined"}
+_AS = {"edited": " as it was changed", "report": "", "refined": " as it was refined"}
 _CHOOSE = "design chooses joints anew"
 _ADVICE = {
     "edited": f"refine lets finite elements correct it, and {_CHOOSE}",

@@ -113,6 +113,8 @@ def plan_again(
         A joint bends out of the plane.
     """
     posed, model = posed_of(design), model_of(request, formula)
+    if request.tube.pressure_bar is not None:
+        posed = replace(posed, pressure=request.tube.pressure_bar / BAR_PER_MPA)
     if forward is not None:
         limits = limits_of(model, request.tube, request.base_free)
         posed = corrected(request, forward, profile, model, (posed, limits), say)

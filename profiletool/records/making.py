@@ -80,10 +80,13 @@ def changed_request(request: Request, values: Mapping[str, Any]) -> Request:
     return request
 
 
-def request_again(design: Design, profile: Profile, refine: bool) -> Request:
+def request_again(
+    design: Design, profile: Profile, refine: bool, pressure_bar: float | None = None
+) -> Request:
     """Ask for a design anew: its own tube, model and errors of the build, along its profile.
 
-    Its numbers stay as they are, whatever steps they lie on, unless they are to be corrected.
+    Its numbers stay as they are, whatever steps they lie on, unless they are to be corrected; then
+    its pressure is the one that is given, if any.
     """
     tube, gauze, most = design.tube, design.gauze, TubeSpec()
     spec = TubeSpec(
@@ -97,6 +100,7 @@ def request_again(design: Design, profile: Profile, refine: bool) -> Request:
         max_length_mm=max(tube.length_mm, most.max_length_mm),
         rubber=tube.rubber,
         clamp_mm=design.clamp.length_mm,
+        pressure_bar=pressure_bar,
     )
     asked = Request(
         Path(design.source.file),
