@@ -25,6 +25,7 @@ from profiletool.verify.cautions import strained
 _MOST_CHOICES = 4  # of joints until one works, by the model that they are chosen by
 _MOST_WAYS = 2
 _AFTER = 1  # choices that are left once one works
+_MOST_BENT = 2  # ways that finite elements are asked about, each for as long as a design takes
 
 Say = Callable[[str], None]
 Bend = Callable[[Request, Subject], Draft]  # design and finite elements, as for any request
@@ -74,6 +75,7 @@ def _worked(
     """
     ways: list[Way] = []
     left, searched, choices = [f for f in families if f.trials], list[str](), _MOST_CHOICES
+    asked = 0
     while left and choices and len(ways) < _MOST_WAYS:
         family = min(left, key=lambda one: one.trials[0].much)
         left.remove(family)
@@ -82,7 +84,9 @@ def _worked(
             rest = promising(at, family).trials
         else:
             choices -= 1
-            way = _way(at, family.trials[0], None if ways else bend)
+            by_fe = bend if not ways and asked < _MOST_BENT else None
+            way = _way(at, family.trials[0], by_fe)
+            asked += by_fe is not None
             if way is not None:
                 say(str(way))
                 ways.append(way)
