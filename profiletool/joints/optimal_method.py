@@ -20,12 +20,13 @@ from profiletool.joints.correction.correct import (
     CannotBend,
     Corrected,
     ForwardModel,
+    StepSizes,
     correct,
 )
 from profiletool.joints.correction.parameters import PosedChain, parameters_of
-from profiletool.joints.correction.sizes import StepSizes
 from profiletool.joints.expected import Aim, ErrorSizes, Expected, error_sizes
 from profiletool.joints.layout import Layout
+from profiletool.joints.misfit import misfit
 from profiletool.joints.optimal.choose import TOLERANCE_MM, Choice, ChoiceOptions, choose
 from profiletool.joints.plan import Plan, out_of_reach
 from profiletool.profile.curve import points_at
@@ -38,6 +39,7 @@ from profiletool.records.units import BAR_PER_MPA, FloatArray
 
 S = TypeVar("S")
 _CHOICES = 2
+_MESH_COSTS_MM = 0.1  # RMS: what nobody sees, where every cut falls on whole threads
 _AGAIN = 0.97  # of the pressure that a tube stands, where it does not stand the one asked
 
 
@@ -105,10 +107,6 @@ def _standing(
     bending model corrects it. The notes say so, and the last why it is out of reach.
     """
 
-    def by_model(choice: Choice) -> PosedChain:
-        bending = BendingForwardModel(model)
-        return corrected(request, bending, profile, model, start_of(choice), lambda line: None)
-
     def say_fe(line: str) -> None:
         say(f"finite elements, {line}")
 
@@ -120,19 +118,34 @@ def _standing(
             f"{choice.misfit.rms_mm:.2f} mm RMS off the profile by the {_by(model)}"
         )
         hopeless = out_of_reach(profile.length_mm, choice.misfit.rms_mm, request)
+        steps, posed = _settled(request, choice, profile, model)
         if forward is None or hopeless:
-            return by_model(choice), choice, tuple(notes), hopeless
+            return posed, choice, tuple(notes), hopeless
         try:
-            posed = corrected(request, forward, profile, model, start_of(choice), say_fe)
+            posed = corrected(steps, forward, profile, model, start_of(choice), say_fe)
             return posed, choice, tuple(notes), ""
         except CannotBend as problem:
             notes.append(f"the first choice of joints did not stand by FE: {problem}")
             say(notes[-1])
-            posed = by_model(choice)
             spec = replace(spec, max_pressure_bar=BAR_PER_MPA * _AGAIN * problem.reached)
             if problem.reached <= choice.limits.pressure[0]:  # as where the pressure is given
                 break
     return posed, choice, tuple(notes), ""
+
+
+def _settled(
+    request: Request, choice: Choice, profile: Profile, model: Model
+) -> tuple[Request, PosedChain]:
+    """Settle the step of the places (see `Request`), and correct a choice by the bending model."""
+    asked = [request]
+    if request.place_step_mm is None:
+        steps = (PLACE_STEP_MM, request.tube.pitch_mm)
+        asked = [replace(request, place_step_mm=step) for step in steps]
+    bending, start = BendingForwardModel(model), start_of(choice)
+    found = [correction(one, bending, profile, model, start, lambda line: None) for one in asked]
+    fits = [misfit(one.best.shape, profile).rms_mm for one in found]
+    best = 1 if len(fits) > 1 and fits[1] < fits[0] + _MESH_COSTS_MM else 0
+    return asked[best], found[best].best.posed
 
 
 def _check_pressures(spec: TubeSpec, model: Model) -> None:
@@ -201,7 +214,6 @@ def _step_sizes(request: Request) -> StepSizes:
         alpha=spec.thread_rad if alpha is None else float(np.radians(alpha)),
         place=PLACE_STEP_MM if place is None else place,
         pressure=PRESSURE_STEP,
-        mesh=spec.pitch_mm if place is None else None,
     )
 
 
@@ -232,8 +244,8 @@ def correction(
 ) -> Corrected[S]:
     """Correct an actuator as `corrected`, with the state that it was left in."""
     posed, limits = start
-    parameters, steps = parameters_of(posed.chain, profile, limits), _step_sizes(request)
-    vector, aim = parameters.pack(posed), _aim(request, model)
+    parameters, aim = parameters_of(posed.chain, profile, limits), _aim(request, model)
+    vector, steps = parameters.pack(posed), _step_sizes(request)
     return correct(forward, model, parameters, vector, profile, steps, aim, say)
 
 

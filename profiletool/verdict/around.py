@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from profiletool.joints.again import on_mesh
 from profiletool.joints.correction.correct import CannotBend
 from profiletool.joints.misfit import misfit
 from profiletool.joints.optimal.polish import Polished
@@ -58,7 +59,7 @@ def _by_model(what: str, polished: Polished, attempt: Draft) -> Neighbour:
 
 def _by_fe(found: Neighbour, polished: Polished, attempt: Draft, run: Run) -> Neighbour:
     """Correct a neighbour by finite elements, from the design's own state; else leave it."""
-    request, plan = attempt.request, attempt.plan
+    request, plan = on_mesh(attempt.request, attempt.design), attempt.plan
     assert plan.choice is not None
     assert plan.model is not None
     forward = FeForwardModel(request.tube, request.model, known=run.solution)

@@ -16,9 +16,8 @@ from profiletool.bending.model import centers_of
 from profiletool.bending.response import Response
 from profiletool.joints.bounds import Limits
 from profiletool.joints.closest import closest_points, distance_jacobian
-from profiletool.joints.correction.correct import CannotBend, Iterate, correct
+from profiletool.joints.correction.correct import CannotBend, Iterate, StepSizes, correct
 from profiletool.joints.correction.parameters import Parameters
-from profiletool.joints.correction.sizes import StepSizes
 from profiletool.joints.expected import Aim
 from profiletool.profile.curve import arc_length
 from profiletool.records.frames import Shape

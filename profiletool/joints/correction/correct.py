@@ -21,7 +21,6 @@ from profiletool.joints.closest import (
     target_points,
 )
 from profiletool.joints.correction.parameters import Parameters, PosedChain
-from profiletool.joints.correction.sizes import StepSizes, settled, sizes_of
 from profiletool.joints.correction.steps import Linear
 from profiletool.joints.correction.surrogate import Surrogate
 from profiletool.joints.expected import Aim
@@ -39,6 +38,15 @@ _ENOUGH_MM = 0.3  # RMS of a shape whose numbers will be rounded: rounding costs
 _AGAIN = 0.97  # of the pressure that a tube stands, where it does not stand the one tried
 _BUILT = "in steps that can be built"
 _SPARE_MM = 1.0  # how far the tube goes on beyond the profile's end
+
+
+@dataclass(frozen=True)
+class StepSizes:
+    """The steps that numbers come in; 0 where they are free. rad, mm, MPa."""
+
+    alpha: float
+    place: float
+    pressure: float
 
 
 @dataclass(frozen=True)
@@ -181,10 +189,9 @@ class _Loop(Generic[S]):
         if not max(steps.alpha, steps.place, steps.pressure) > 0.0:
             return best
         surrogate, built, problem = self._surrogate(best), None, None
-        steps = settled(surrogate, best.vector, steps)
         tried, most = list[FloatArray](), np.inf
         for _ in range(_MOST_BUILT):
-            target, promised = surrogate.built(sizes_of(best.vector, best.parameters, steps))
+            target, promised = surrogate.built(_step_sizes(best.vector, best.parameters, steps))
             if any(np.allclose(target, other, atol=1e-9) for other in tried):
                 break
             if built is not None and not self._pays(promised, built):
@@ -264,6 +271,14 @@ class _Loop(Generic[S]):
         )
         parameters, points = iterate.parameters, self._points
         return Surrogate(linear, parameters, self._model, points, self._expected)
+
+
+def _step_sizes(vector: FloatArray, parameters: Parameters, steps: StepSizes) -> FloatArray:
+    """Step of each number: the tube slides freely as long as its root keeps its length."""
+    n = parameters.joints
+    sizes = [steps.alpha] * n + [steps.place] * (n - 1)
+    sizes += [steps.place if parameters.root_grows(vector) else 0.0, steps.pressure]
+    return np.array(sizes + [0.0, 0.0] * parameters.limits.base_free)
 
 
 def _end(iterate: Iterate[S]) -> float:

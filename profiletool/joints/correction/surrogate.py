@@ -13,7 +13,6 @@ from profiletool.joints.closest import closest_points, distance_jacobian
 from profiletool.joints.correction.parameters import Parameters, facing_motion
 from profiletool.joints.correction.steps import Linear, built_step, free_step
 from profiletool.joints.expected import Expected, ExpectedRows
-from profiletool.joints.misfit import Deviation
 from profiletool.records.units import FloatArray
 
 _REACH = 3.0  # steps over the scale
@@ -67,11 +66,6 @@ class Surrogate:
         # Coarse steps stay next to where the model holds best.
         reach = np.where(step > 0.5 * self.linear.scale, np.minimum(step, reach), reach)
         return self._sought(lambda linear: built_step(linear, step, reach))
-
-    def nominal(self, vector: FloatArray) -> float:
-        """Give the cost of the shape alone, mm², at another vector."""
-        near = self._near(self._bent(vector), vector)
-        return float(near.objective.cost(Deviation(near.distance)))
 
     def below(self, pressure: float) -> Surrogate:
         """Keep to pressures below one, MPa."""
