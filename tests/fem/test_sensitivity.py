@@ -50,13 +50,14 @@ def lengthened(actuator: Actuator, segment: int, by: float) -> Actuator:
     return replace(actuator, length=float(edges[-1]), windows=windows)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("center", "rubber"),
     [
-        pytest.param((270.0, 90.0), "mooney-rivlin", marks=pytest.mark.slow),
+        ((270.0, 90.0), "mooney-rivlin"),
         ((250.0, 30.0), "mooney-rivlin"),
-        pytest.param((270.0, 90.0), "yeoh", marks=pytest.mark.slow),
-        pytest.param((270.0, 90.0), "ogden", marks=pytest.mark.slow),
+        ((270.0, 90.0), "yeoh"),
+        ((270.0, 90.0), "ogden"),
     ],
 )
 def test_against_differences(center: tuple[float, float], rubber: str) -> None:
