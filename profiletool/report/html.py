@@ -19,6 +19,8 @@ from profiletool.report.expectation import expectation
 from profiletool.report.figure import svg
 from profiletool.report.film import Film, film_of, still_of
 from profiletool.report.markup import Markup, adopted, joined, pairs, tag, text
+from profiletool.report.measured import measured
+from profiletool.report.neighbours import neighbours
 from profiletool.report.plots import theta_figure
 from profiletool.report.stage import controls, legend, readout, stage
 from profiletool.report.steps import steps
@@ -90,6 +92,9 @@ def _sections(dossier: Dossier, film: Film) -> list[_Section]:
             f"{scene.by} predicts it, for every number of joints and every pressure."
         )
         parts.append(_Section("trade-off", "More joints, more pressure", _plot(figure, "to", said)))
+    if design.neighbours:
+        told = neighbours(design, dossier.request)
+        parts.append(_Section("neighbours", "Neighbours of this design", told))
     parts.append(_Section("build", "How to build it", _build(dossier)))
     if design.trim:
         parts.append(
@@ -101,7 +106,7 @@ def _sections(dossier: Dossier, film: Film) -> list[_Section]:
     if design.sensitivity:
         parts.append(_Section("sensitivity", "What small errors do", sensitivity_table(design)))
     told = provenance(design, found, dossier.options)
-    parts.append(_Section("provenance", "Where this comes from", told))
+    parts.append(_Section("provenance", "Where this comes from", joined((told, measured()))))
     return parts
 
 
