@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from profiletool.errors import NoObject
-from profiletool.image.find.judge import PLAIN, Candidate, Region, judged
+from profiletool.image.find.judge import PLAIN, Candidate, Region, judged, outright
 from profiletool.image.find.masks import overlap
 from profiletool.image.find.mosaic import polished
 from profiletool.image.find.proposals import maps_of, proposals, regions, within
@@ -16,7 +16,7 @@ from profiletool.image.find.region import SeveralAlike, region_on_ground
 from profiletool.image.find.rough import Rough, rough_of
 from profiletool.image.find.view import View
 
-BELIEVED = 0.4  # a candidate of less confidence is nothing to design from
+BELIEVED = 0.3  # a candidate of less confidence is nothing to design from
 _DOUBTED = "plain ground, doubted"
 _SAME = 0.94  # overlap of regions that the polish makes one
 _MOST_FIND = 0.5  # of the methods that agree most
@@ -26,7 +26,7 @@ _ON_HOST = 0.7  # of its host: a larger region is the host itself
 
 
 def find_candidates(view: View) -> list[Candidate]:
-    """Look for the object by every method.
+    """Look for the object by every method, unless a clean ground shows it outright.
 
     Returns
     -------
@@ -38,22 +38,24 @@ def find_candidates(view: View) -> list[Candidate]:
     NoObject
         No method found anything.
     """
-    rough, maps = rough_of(view), maps_of(view)
     votes: list[Region] = []
     missed: NoObject | None = None
     try:
         votes.append(Region(region_on_ground(view.lab, view.ground, view.point), PLAIN))
+        if (clear := outright(view, votes[0])) is not None:
+            return [clear]
     except NoObject as problem:
         missed = problem
         if isinstance(problem, SeveralAlike) and view.plain:
             raise
-    for method, mask in proposals(view, rough, maps):
+    rough = rough_of(view)
+    for method, mask in proposals(view, rough, maps_of(view)):
         votes += [Region(region, method) for region in regions(mask, view.point)]
     if not votes:
         raise missed or NoObject("no object found in the picture")
     found = _unlike(votes + _agreed(view, rough, votes))
     found += _looked_into(view, found)
-    return judged(view, maps, votes, _with_polished(view, found))
+    return judged(view, votes, _with_polished(view, found))
 
 
 def _unlike(regions_: Sequence[Region]) -> list[Region]:

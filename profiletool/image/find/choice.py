@@ -8,23 +8,25 @@ from dataclasses import replace
 import cv2
 import numpy as np
 
-from profiletool.image.find.candidates import BELIEVED
 from profiletool.image.find.ground import BoolImage
 from profiletool.image.find.judge import Candidate, ahead
 from profiletool.image.find.masks import overlap
 from profiletool.image.find.region import ALIKE, SeveralAlike
 
 _APART = 0.05  # overlap below which two masks are two things
-_EXTENT = 0.7  # overlap of a mask's own box with the one that was given
+_EXTENT, _LOOSE = 0.7, 0.6  # overlap of a mask's own box with the one given, close or loose
 _BY_WIDTH = 3.0  # merit that a point takes from what is as large as the picture
 _NEAR, _LITTLE = 0.7, 0.06  # merit behind the best; share of its area that is worth a word
 _SAME_SHOWN = 0.9  # overlap of two masks that look the same
+_RIVAL, _ALONE = 2.0, 0.7  # merit behind the best; confidence that a rival alone would have
 
 
 def fitting(found: Sequence[Candidate], barred: BoolImage) -> list[Candidate]:
-    """Keep what fills a box, all but which is barred (H, W)."""
+    """Keep what fills a box, all but which is barred (H, W); if nothing does, what comes nearest."""
     box = _extent(~barred)
-    return _told([one for one in found if overlap(_extent(one.mask), box) >= _EXTENT])
+    fits = [overlap(_extent(one.mask), box) for one in found]
+    least = _EXTENT if max(fits) >= _EXTENT else _LOOSE
+    return _told([one for one, fit in zip(found, fits, strict=True) if fit >= least])
 
 
 def round_point(found: Sequence[Candidate]) -> list[Candidate]:
@@ -33,13 +35,13 @@ def round_point(found: Sequence[Candidate]) -> list[Candidate]:
 
 
 def _told(found: Sequence[Candidate], by_width: float = 0.0) -> list[Candidate]:
-    """Order candidates anew by what the user has said, and believe them the more."""
+    """Order candidates anew by what the user has said."""
     merits = np.array([one.quality.merit - by_width * one.quality.width for one in found])
     made = []
     for number in np.argsort(-merits, kind="stable"):
         one = found[number]
         alike = np.array([overlap(one.mask, other.mask) for other in found])
-        quality = ahead(replace(one.quality, told=1.0), merits[number] - merits, alike)
+        quality = ahead(one.quality, merits[number] - merits, alike)
         made.append(replace(one, quality=quality))
     return made
 
@@ -89,7 +91,7 @@ def _side(part: BoolImage, mask: BoolImage) -> str:
 
 
 def refuse_another(best: Candidate, found: Sequence[Candidate]) -> None:
-    """Refuse when another object is believed as much as the best candidate.
+    """Refuse when another object, alone, would be believed as much as the best candidate.
 
     Raises
     ------
@@ -98,5 +100,6 @@ def refuse_another(best: Candidate, found: Sequence[Candidate]) -> None:
     for other in found:
         as_large = ALIKE < other.quality.size / best.quality.size < 1.0 / ALIKE
         apart = overlap(best.mask, other.mask) < _APART
-        if as_large and apart and other.confidence >= BELIEVED:
+        near = best.quality.merit - other.quality.merit < _RIVAL
+        if as_large and apart and near and replace(other.quality, share=1.0).confidence > _ALONE:
             raise SeveralAlike([best.mask, other.mask])

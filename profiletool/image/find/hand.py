@@ -36,13 +36,13 @@ class Hand(Enum):
 def hand_at(view: View, mask: BoolImage) -> Hand:
     """Say what a hand does to the object that a mask (H, W) shows.
 
-    A hand has the colour of skin, which the ground has not, and comes in over the frame: by
-    itself, or in a sleeve that the mask then holds too.
+    A hand has the colour of skin, which the ground has not, and comes in over the frame, by
+    itself or in a sleeve.
     """
     skin = _skin(view)
     if _sleeved(skin, mask):
-        return Hand.NEAR
-    hand = connected_to(frame_of(skin.shape, 0.0), skin)
+        return Hand.COVERS
+    hand = _from_frame(view, skin, mask)
     if not _ends_firmly(view, hand, mask):
         return Hand.NONE  # a warm shadow
     hand &= ~view.barred
@@ -63,6 +63,15 @@ def _sleeved(skin: BoolImage, mask: BoolImage) -> bool:
     beyond = rest & ~sleeve
     area = mask.sum()
     return bool(sleeve.sum() > _SLEEVE * area and beyond.sum() > _BEYOND * area)
+
+
+def _from_frame(view: View, skin: BoolImage, mask: BoolImage) -> BoolImage:
+    """Mask the skin that comes in over the frame, by itself or in a sleeve on a plain ground."""
+    frame = frame_of(skin.shape, 0.0)
+    hand = connected_to(frame, skin)
+    if hand.any() or not view.plain:
+        return hand
+    return skin & connected_to(frame, view.ground.standing & ~mask)
 
 
 def _ends_firmly(view: View, hand: BoolImage, mask: BoolImage) -> bool:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from profiletool.image.find.ground import BoolImage, FloatImage, frame_of
+from profiletool.image.find.ground import BoolImage, frame_of
 from profiletool.image.find.masks import overlap
 from profiletool.image.find.mosaic import cut, mosaic_of
 from profiletool.image.find.quality import Quality, quality_of
@@ -15,9 +15,8 @@ from profiletool.image.find.view import View
 from profiletool.records.units import FloatArray
 
 PLAIN, LEARNED = "plain ground", "learned"
-ANOTHER, FAR = 0.8, 3.0  # overlap below which two are not one thing, and a lead that is enough
-SAME = 0.93  # overlap from which on two have one outline
-_AGREE = 0.9  # overlap of two methods that find the same, outline and all
+_SAME = 0.9  # overlap from which on two have one outline
+_CORNERED, _FIRM = 0.5, 0.9  # four corners may be a sheet; share of a firm edge that is enough
 _MOSTLY, _SMALLER = 0.9, 0.7  # of a region: what lies in a larger one, and how much smaller it is
 _UNCLEAR, _CLEAR = 0.05, 0.35  # how clear nothing is, and a sheet or what lies on it
 
@@ -45,19 +44,21 @@ class Candidate:
         return self.quality.confidence
 
 
-def judged(
-    view: View,
-    maps: Mapping[str, FloatImage],
-    votes: Sequence[Region],
-    found: Sequence[Region],
-) -> list[Candidate]:
+def outright(view: View, region: Region) -> Candidate | None:
+    """Judge the one thing on a clean ground, where it is whole and its edge is firm; else None."""
+    if not view.clean or view.told:
+        return None
+    quality = quality_of(view, region.mask)
+    whole = quality.border == 0.0 and quality.four_cornered < _CORNERED
+    return Candidate(region.mask, PLAIN, quality) if whole and quality.edge > _FIRM else None
+
+
+def judged(view: View, votes: Sequence[Region], found: Sequence[Region]) -> list[Candidate]:
     """Judge what was found in a view.
 
     Parameters
     ----------
     view : View
-    maps : dict
-        Of what stands out, each (H, W).
     votes : sequence of Region
         What each method found.
     found : sequence of Region
@@ -67,7 +68,7 @@ def judged(
     list of Candidate
         The likeliest first.
     """
-    made = _found_by(_by_themselves(view, maps, found), votes, found)
+    made = _found_by(_by_themselves(view, found), votes, found)
     size = np.array([one.mask.sum() for one in found], float)
     common = np.array([[(one.mask & two.mask).sum() for two in found] for one in found], float)
     alike = common / (size[:, None] + size - common)
@@ -82,33 +83,19 @@ def judged(
 
 
 def ahead(quality: Quality, gains: FloatArray, alike: FloatArray) -> Quality:
-    """Tell a quality how far it leads: merits gained on all, (N,), and overlaps with them, (N,)."""
-    lead, fine = (min((*gains[alike < share], FAR)) for share in (ANOTHER, SAME))
-    return replace(quality, lead=max(float(lead), -FAR), fine_lead=max(float(fine), -FAR))
+    """Tell a quality its share of belief: merits gained on all, (N,), and overlaps with them, (N,)."""
+    belief = np.exp(-gains - np.max(-gains))
+    return replace(quality, share=float(belief[alike > _SAME].sum() / belief.sum()))
 
 
-def _by_themselves(
-    view: View, maps: Mapping[str, FloatImage], found: Sequence[Region]
-) -> list[Quality]:
+def _by_themselves(view: View, found: Sequence[Region]) -> list[Quality]:
     mosaic = mosaic_of(view.lab)
     ground = frame_of(view.barred.shape, 0.01) | view.barred
-    shares = {
-        name: np.clip(maps[name] / max(float(np.quantile(maps[name], 0.99)), 1e-3), 0.0, 1.0)
-        for name in ("barriers", "texture")
-    }
     made = []
     for one in found:
         home = None if one.host is None else found[one.host].mask
-        made.append(
-            replace(
-                quality_of(view, one.mask, home),
-                regained=overlap(one.mask, cut(mosaic, one.mask, ground, rounds=1)),
-                **{
-                    name: float(share[one.mask].sum() / np.maximum(share, one.mask).sum())
-                    for name, share in shares.items()
-                },
-            )
-        )
+        regained = overlap(one.mask, cut(mosaic, one.mask, ground, rounds=1))
+        made.append(replace(quality_of(view, one.mask, home), regained=regained))
     return made
 
 
@@ -125,11 +112,9 @@ def _found_by(
         told.append(
             replace(
                 quality,
-                found_by=float((alike > ANOTHER).mean()),
-                drawn_by=float((alike > _AGREE).mean()),
+                drawn_by=float((alike > _SAME).mean()),
                 agreement=float(alike.mean()),
-                taught=1.0 if learned else 0.0,
-                learned=max((float(alike[number]) for number in learned), default=0.0),
+                learned=max((float(alike[number]) for number in learned), default=1.0),
             )
         )
     return told

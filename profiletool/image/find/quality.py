@@ -27,15 +27,15 @@ _SHEET, _NO_SHEET = 0.97, 0.9  # overlap with four corners of a sheet, and of wh
 # Fitted to photographs with true masks: which candidate is the object, and how likely it is.
 _MERIT = {
     "edge": 1.4, "steady": 3.4, "peak": 1.3, "separation": 0.1, "ground": 2.7, "border": -17.1,
-    "width": -0.9, "middle": 6.1, "regained": 0.9, "agreement": 1.8, "part": -1.5,
+    "width": -0.9, "middle": 6.1, "regained": 0.9, "agreement": 1.8,
     "on_sheet": 6.0, "sheet": -2.3, "within": -1.4, "clear": 1.1, "plain": 2.5,
 }  # fmt: skip
-_ODDS = {
-    "separation": 0.3, "ground": 2.1, "regained": 1.7, "lead": 0.6, "fine_lead": 0.6,
-    "told": 2.5,
-}  # fmt: skip
+_ODDS = {"share": 2.7, "clear": 1.3, "drawn_by": 1.4, "small": -3.0}
 _EDGELESS = 0.5  # with less of a firm edge, nothing else makes up for it
-_BIAS = -5.2
+_SMALL_WIDTH = 0.2  # of the picture: what is smaller shows less of itself
+_SECOND_OPINION = 0.85  # overlap with the learned one below which there is doubt
+_BIAS = -3.0
+_CEILING = 0.97  # of that chance: what can be seen of a mask warrants no more
 
 
 @dataclass(frozen=True)
@@ -66,14 +66,12 @@ class Quality:
         Whether four corners tell its shape, 0 to 1.
     regained : float
         Overlap with what its colours alone, against those of all the rest, cut out.
-    barriers, texture : float
-        Overlap with what stands out by barriers of colour, and by texture.
-    found_by, drawn_by : float
-        Share of the methods that find much the same, and that draw the same outline.
+    drawn_by : float
+        Share of the methods that draw the same outline.
     agreement : float
         Mean overlap with what all methods find.
-    taught, learned : float
-        Whether there is a learned opinion, and the overlap with it.
+    learned : float
+        Overlap with the learned opinion; 1 where there is none.
     on_sheet : float
         How clear something of four corners is round it, 0 to 1.
     sheet : float
@@ -82,10 +80,8 @@ class Quality:
         How clear a larger candidate round it is against it, where that is no sheet, 0 to 1.
     plain : float
         How clear its edge is where it is what stands out from a ground of one smooth colour.
-    lead, fine_lead : float
-        Merit ahead of the best candidate that is another thing; that is another outline.
-    told : float
-        Whether the user has said that it lies there.
+    share : float
+        Share of the belief in all candidates, by their merits, that goes to this outline.
     """
 
     edge: float
@@ -98,25 +94,24 @@ class Quality:
     middle: float
     four_cornered: float
     regained: float = 1.0
-    barriers: float = 0.0
-    texture: float = 0.0
-    found_by: float = 1.0
     drawn_by: float = 1.0
     agreement: float = 1.0
-    taught: float = 0.0
-    learned: float = 0.0
+    learned: float = 1.0
     on_sheet: float = 0.0
     sheet: float = 0.0
     within: float = 0.0
     plain: float = 0.0
-    lead: float = 0.0
-    fine_lead: float = 0.0
-    told: float = 0.0
+    share: float = 1.0
 
     @property
     def width(self) -> float:
         """Root of the share of the picture."""
         return float(np.sqrt(self.size))
+
+    @property
+    def small(self) -> float:
+        """How far it falls short of a size that shows enough of it, 0 to 1."""
+        return max(0.0, 1.0 - self.width / _SMALL_WIDTH)
 
     @property
     def clear(self) -> float:
@@ -132,7 +127,8 @@ class Quality:
     def confidence(self) -> float:
         """Chance that the mask is the object's to a twentieth of its area, 0 to 1."""
         odds = 1.0 / (1.0 + np.exp(-_BIAS - self._sum(_ODDS)))
-        return float(odds * min(1.0, self.edge / _EDGELESS))
+        doubt = min(1.0, self.edge / _EDGELESS) * min(1.0, self.learned / _SECOND_OPINION)
+        return float(_CEILING * odds * doubt)
 
     def _sum(self, weights: Mapping[str, float]) -> float:
         return sum(weight * float(getattr(self, name)) for name, weight in weights.items())

@@ -62,13 +62,19 @@ def rough_of(
     step = max(1.0, float(np.sqrt(barred.size / _PIXELS)))
     height, width = barred.shape
     shape = max(8, round(height / step)), max(8, round(width / step))
-    rgb = cv2.resize(view.rgb[window], shape[::-1], interpolation=cv2.INTER_AREA)
+    rgb = _dithered(cv2.resize(view.rgb[window], shape[::-1], interpolation=cv2.INTER_AREA))
     core = np.zeros(shape, bool)
     if view.point is not None:
         x, y = view.point[0] - (window[1].start or 0), view.point[1] - (window[0].start or 0)
         core = disc(shape, (x / step, y / step), _CORE * min(shape))
     certain = frame_of(shape, _FRAME) | resized(barred, shape)
-    return Rough(np.asarray(rgb, np.uint8), certain, core, (height, width))
+    return Rough(rgb, certain, core, (height, width))
+
+
+def _dithered(rgb: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Add a grey level up or down: on drawn, noiseless colours cv2.grabCut takes many seconds."""
+    dither = np.random.default_rng(0).integers(-1, 2, rgb.shape)
+    return np.asarray(np.clip(rgb + dither, 0, 255), np.uint8)
 
 
 def disc(shape: tuple[int, int], centre: tuple[float, float], radius: float) -> BoolImage:

@@ -88,7 +88,10 @@ def _finer(
         view = view_of(rgb, paint_mask(polygons, mask.shape, step))
         with contextlib.suppress(NoObject):
             stands = region_on_ground(view.lab, view.ground)
-            mask = stands if overlap(stands, mask) > _SAME else mask
+            if overlap(stands, mask) > _SAME:
+                mask = stands
+                if view.clean:
+                    return mask
     elif mask.shape == best.mask.shape:
         return mask
     return polished(soft_lab(rgb), mask, _RING_SHARE)
@@ -116,6 +119,8 @@ def _chosen(view: View, rgb: NDArray[np.uint8], hint: Hint) -> tuple[Candidate, 
             raise UsageError(f"`candidate` {hint.candidate}: only {len(found)} were found")
         return found[hint.candidate - 1], Hand.NONE, ""
     best = found[0]
+    if hint.point is None:
+        refuse_another(best, found)
     if best.confidence < BELIEVED:
         raise _unsure(
             found,
@@ -132,8 +137,6 @@ def _chosen(view: View, rgb: NDArray[np.uint8], hint: Hint) -> tuple[Candidate, 
             "a hand seems to hold the object and hide part of it; lay it down, or say with `box`, "
             "`point` or `mask` what to take",
         )
-    if hint.point is None:
-        refuse_another(best, found)
     return best, hand, doubt_of(all_)
 
 

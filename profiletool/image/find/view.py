@@ -13,7 +13,8 @@ from profiletool.image.find.ground import BoolImage, FloatImage, Ground, fit_gro
 from profiletool.records.request import Point
 
 _BLUR_PX = 0.8
-_MOTTLED_LAB = 3.0  # a ground that scatters more than this is not told by a smooth surface
+# A ground that scatters more than this is not told by a smooth surface; less, and it is clean.
+_MOTTLED_LAB, _CLEAN_LAB = 3.0, 1.0
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,11 @@ class View:
     def plain(self) -> bool:
         """Whether a smooth colour surface tells all of the ground."""
         return self.ground.scatter_lab < _MOTTLED_LAB
+
+    @property
+    def clean(self) -> bool:
+        """Whether the ground shows nothing but a smooth colour and noise."""
+        return self.ground.scatter_lab < _CLEAN_LAB
 
     @property
     def told(self) -> bool:

@@ -133,8 +133,7 @@ def test_twelve_megapixels_that_take_every_method(shared: Path) -> None:
 def candidate(mask: np.ndarray, **changes: float) -> Candidate:
     parts = dict.fromkeys(("edge", "steady", "peak", "separation", "ground"), 0.9)
     quality = Quality(
-        **parts, border=0.0, size=float(mask.mean()), middle=0.9, four_cornered=0.0, lead=3.0,
-        fine_lead=3.0,
+        **parts, border=0.0, size=float(mask.mean()), middle=0.9, four_cornered=0.0,
     )  # fmt: skip
     return Candidate(mask, "drawn", replace(quality, **changes))
 
@@ -184,7 +183,7 @@ def test_near_duplicates_are_shown_once() -> None:
 
 def test_a_part_that_may_be_a_shadow_is_named() -> None:
     best = candidate(disc(160, 110, 50) > 0.5)
-    longer = candidate((disc(160, 110, 50) > 0.5) | (disc(160, 150, 40) > 0.5), lead=-0.1)
+    longer = candidate((disc(160, 110, 50) > 0.5) | (disc(160, 150, 40) > 0.5))
     assert "at the bottom may be a shadow" in doubt_of([best, longer])
     assert doubt_of([best]) == ""
 
@@ -194,7 +193,7 @@ def test_two_that_are_believed_and_apart_are_refused() -> None:
     assert one.confidence > BELIEVED
     with pytest.raises(NoObject, match="2 objects alike"):
         refuse_another(one, [one, two])
-    refuse_another(one, [one, candidate(two.mask, lead=-3.0, fine_lead=-3.0)])
+    refuse_another(one, [one, candidate(two.mask, edge=0.2)])
     refuse_another(one, [one, candidate(disc(230, 120, 15) > 0.5)])
     refuse_another(one, [one, candidate(disc(92, 120, 45) > 0.5)])
 
