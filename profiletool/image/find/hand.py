@@ -42,7 +42,7 @@ def hand_at(view: View, mask: BoolImage) -> Hand:
     skin = _skin(view)
     if _sleeved(skin, mask):
         return Hand.COVERS
-    hand = _from_frame(view, skin, mask)
+    hand = connected_to(frame_of(skin.shape, 0.0), skin)
     if not _ends_firmly(view, hand, mask):
         return Hand.NONE  # a warm shadow
     hand &= ~view.barred
@@ -63,15 +63,6 @@ def _sleeved(skin: BoolImage, mask: BoolImage) -> bool:
     beyond = rest & ~sleeve
     area = mask.sum()
     return bool(sleeve.sum() > _SLEEVE * area and beyond.sum() > _BEYOND * area)
-
-
-def _from_frame(view: View, skin: BoolImage, mask: BoolImage) -> BoolImage:
-    """Mask the skin that comes in over the frame, by itself or in a sleeve on a plain ground."""
-    frame = frame_of(skin.shape, 0.0)
-    hand = connected_to(frame, skin)
-    if hand.any() or not view.plain:
-        return hand
-    return skin & connected_to(frame, view.ground.standing & ~mask)
 
 
 def _ends_firmly(view: View, hand: BoolImage, mask: BoolImage) -> bool:

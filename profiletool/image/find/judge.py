@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from profiletool.image.find.ground import BoolImage, frame_of
-from profiletool.image.find.masks import overlap
+from profiletool.image.find.masks import edges_touched, overlap
 from profiletool.image.find.mosaic import cut, mosaic_of
 from profiletool.image.find.quality import Quality, quality_of
 from profiletool.image.find.view import View
@@ -45,12 +45,12 @@ class Candidate:
 
 
 def outright(view: View, region: Region) -> Candidate | None:
-    """Judge the one thing on a clean ground, where it is whole and its edge is firm; else None."""
+    """Judge the one thing on a clean ground; None for a sheet or one without a firm edge."""
     if not view.clean or view.told:
         return None
     quality = quality_of(view, region.mask)
-    whole = quality.border == 0.0 and quality.four_cornered < _CORNERED
-    return Candidate(region.mask, PLAIN, quality) if whole and quality.edge > _FIRM else None
+    thing = len(edges_touched(region.mask)) <= 1 and quality.four_cornered < _CORNERED
+    return Candidate(region.mask, PLAIN, quality) if thing and quality.edge > _FIRM else None
 
 
 def judged(view: View, votes: Sequence[Region], found: Sequence[Region]) -> list[Candidate]:
@@ -83,7 +83,7 @@ def judged(view: View, votes: Sequence[Region], found: Sequence[Region]) -> list
 
 
 def ahead(quality: Quality, gains: FloatArray, alike: FloatArray) -> Quality:
-    """Tell a quality its share of belief: merits gained on all, (N,), and overlaps with them, (N,)."""
+    """Tell a quality its share of belief: leads on all, (N,), and overlaps with them, (N,)."""
     belief = np.exp(-gains - np.max(-gains))
     return replace(quality, share=float(belief[alike > _SAME].sum() / belief.sum()))
 
