@@ -11,6 +11,7 @@ import numpy as np
 from profiletool.image.find.ground import BoolImage
 from profiletool.image.find.judge import Candidate, ahead
 from profiletool.image.find.masks import overlap
+from profiletool.image.find.proposals import AT_POINT
 from profiletool.image.find.region import ALIKE, SeveralAlike
 
 _APART = 0.05  # overlap below which two masks are two things
@@ -18,7 +19,7 @@ _EXTENT, _LOOSE = 0.7, 0.6  # overlap of a mask's own box with the one given, cl
 _BY_WIDTH = 14.0  # merit that a point takes from what is as large as the picture
 _NEAR, _LITTLE = 0.7, 0.06  # merit behind the best; share of its area that is worth a word
 _SAME_SHOWN = 0.9  # overlap of two masks that look the same
-_RIVAL, _ALONE = 2.0, 0.7  # merit behind the best; confidence that a rival alone would have
+_RIVAL, _ALONE = 2.0, 0.5  # merit behind the best; confidence that a rival alone would have
 
 
 def fitting(found: Sequence[Candidate], barred: BoolImage) -> list[Candidate]:
@@ -30,8 +31,12 @@ def fitting(found: Sequence[Candidate], barred: BoolImage) -> list[Candidate]:
 
 
 def round_point(found: Sequence[Candidate]) -> list[Candidate]:
-    """Put what lies most closely round a point first; all candidates hold it."""
-    return _told(found, _BY_WIDTH)
+    """Put what its colours cut out most closely round a point first; all candidates hold it."""
+    cut_out = [
+        replace(one, quality=replace(one.quality, pointed=float(one.method.startswith(AT_POINT))))
+        for one in found
+    ]
+    return _told(cut_out, _BY_WIDTH)
 
 
 def _told(found: Sequence[Candidate], by_width: float = 0.0) -> list[Candidate]:

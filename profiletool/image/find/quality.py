@@ -28,9 +28,9 @@ _SHEET, _NO_SHEET = 0.97, 0.9  # overlap with four corners of a sheet, and of wh
 _MERIT = {
     "edge": 1.4, "steady": 3.4, "peak": 1.3, "separation": 0.1, "ground": 2.7, "border": -17.1,
     "width": -0.9, "middle": 6.1, "regained": 0.9, "agreement": 1.8,
-    "on_sheet": 6.0, "sheet": -2.3, "within": -1.4, "clear": 1.1, "plain": 2.5,
+    "on_sheet": 6.0, "sheet": -2.3, "within": -1.4, "clear": 1.1, "plain": 2.5, "pointed": 3.0,
 }  # fmt: skip
-_ODDS = {"share": 2.7, "clear": 1.3, "drawn_by": 1.4, "small": -3.0}
+_ODDS = {"share": 2.7, "clear": 1.3, "drawn_by": 1.4, "small": -3.0, "pointed": 1.5}
 _EDGELESS = 0.5  # with less of a firm edge, nothing else makes up for it
 _SMALL_WIDTH = 0.2  # of the picture: what is smaller shows less of itself
 _SECOND_OPINION = 0.85  # overlap with the learned one below which there is doubt
@@ -80,6 +80,8 @@ class Quality:
         How clear a larger candidate round it is against it, where that is no sheet, 0 to 1.
     plain : float
         How clear its edge is where it is what stands out from a ground of one smooth colour.
+    pointed : float
+        Whether it was cut out by the colours round the user's point.
     share : float
         Share of the belief in all candidates, by their merits, that goes to this outline.
     """
@@ -101,6 +103,7 @@ class Quality:
     sheet: float = 0.0
     within: float = 0.0
     plain: float = 0.0
+    pointed: float = 0.0
     share: float = 1.0
 
     @property

@@ -62,13 +62,13 @@ def rough_of(
     step = max(1.0, float(np.sqrt(barred.size / _PIXELS)))
     height, width = barred.shape
     shape = max(8, round(height / step)), max(8, round(width / step))
-    rgb = _dithered(cv2.resize(view.rgb[window], shape[::-1], interpolation=cv2.INTER_AREA))
+    small = cv2.resize(view.rgb[window], shape[::-1], interpolation=cv2.INTER_AREA)
     core = np.zeros(shape, bool)
     if view.point is not None:
         x, y = view.point[0] - (window[1].start or 0), view.point[1] - (window[0].start or 0)
         core = disc(shape, (x / step, y / step), _CORE * min(shape))
     certain = frame_of(shape, _FRAME) | resized(barred, shape)
-    return Rough(rgb, certain, core, (height, width))
+    return Rough(_dithered(np.asarray(small, np.uint8)), certain, core, (height, width))
 
 
 def _dithered(rgb: NDArray[np.uint8]) -> NDArray[np.uint8]:
