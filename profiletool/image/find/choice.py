@@ -16,7 +16,7 @@ from profiletool.image.find.region import ALIKE, SeveralAlike
 
 _APART = 0.05  # overlap below which two masks are two things
 _EXTENT, _LOOSE = 0.7, 0.6  # overlap of a mask's own box with the one given, close or loose
-_BY_WIDTH = 14.0  # merit that a point takes from what is as large as the picture
+_BY_WIDTH = 3.0  # merit that a point takes from what is as large as the picture
 _NEAR, _LITTLE = 0.7, 0.06  # merit behind the best; share of its area that is worth a word
 _SAME_SHOWN = 0.9  # overlap of two masks that look the same
 _RIVAL, _ALONE = 2.0, 0.5  # merit behind the best; confidence that a rival alone would have

@@ -28,7 +28,7 @@ _SHEET, _NO_SHEET = 0.97, 0.9  # overlap with four corners of a sheet, and of wh
 _MERIT = {
     "edge": 1.4, "steady": 3.4, "peak": 1.3, "separation": 0.1, "ground": 2.7, "border": -17.1,
     "width": -0.9, "middle": 6.1, "regained": 0.9, "agreement": 1.8,
-    "on_sheet": 6.0, "sheet": -2.3, "within": -1.4, "clear": 1.1, "plain": 2.5, "pointed": 3.0,
+    "on_sheet": 6.0, "sheet": -2.3, "within": -1.4, "clear": 1.1, "plain": 2.5, "pointed": 1.5,
 }  # fmt: skip
 _ODDS = {"share": 2.7, "clear": 1.3, "drawn_by": 1.4, "small": -3.0, "pointed": 1.5}
 _EDGELESS = 0.5  # with less of a firm edge, nothing else makes up for it
