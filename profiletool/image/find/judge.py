@@ -133,13 +133,15 @@ def _on_each_other(
         in_it = [one for one, held in zip(made, around[:, number], strict=True) if held]
         sheets = [one.four_cornered * min(1.0, one.clear / _CLEAR) for one in round_it]
         wholes = [one.clear * (1.0 - one.four_cornered) for one in round_it]
+        # A point means the innermost region round it: to be a part is no fault there.
+        whole = 0.0 if view.point is not None else max(wholes, default=0.0)
         borne = [min(1.0, one.clear / _CLEAR) for one in in_it]
         stands = found[number].method == PLAIN and view.plain
         told.append(
             replace(
                 quality,
                 on_sheet=max(sheets, default=0.0),
-                within=min(1.0, max(wholes, default=0.0) / max(quality.clear, _UNCLEAR)),
+                within=min(1.0, whole / max(quality.clear, _UNCLEAR)),
                 sheet=max(borne, default=0.0) * quality.four_cornered,
                 plain=quality.edge if stands else 0.0,
             )

@@ -25,6 +25,7 @@ _SIZES = 0.004, 0.85  # of the frame
 _ROUGH_PIXELS = 20_000  # of maps that take their time
 _FLAT = 0.05  # a map that does not rise above this shows rounding only
 _MOST = 3  # regions of one map that are looked at
+_ROUND_POINT = 0.08, 0.16, 0.3  # of the shorter side: radii in which its colours are the object's
 _RECTANGLES = 0.9, 0.8, 0.65  # of the picture, where the object may lie
 _INWARD = 0.03  # of a region's size: what lies within its rim may lie on it
 
@@ -40,6 +41,7 @@ def proposals(
         yield f"{method}, cut", rough.cut(guess)
     for method, guess in _guesses(view):
         yield f"{method}, cut", rough.cut(guess)
+    yield from _round_point(view, rough)
     for share in () if view.boxed else _RECTANGLES:
         guess = _rectangle(shape, share)
         yield f"a rectangle of {100 * share:.0f} %", rough.cut(guess, elsewhere=False)
@@ -79,15 +81,24 @@ def standing_out(strange: FloatImage) -> BoolImage:
 def _guesses(view: View) -> Iterator[tuple[str, BoolImage]]:
     """Where the object is likely to be whatever it looks like."""
     shape = height, width = view.barred.shape
-    if view.point is not None:
-        for share in (0.08, 0.16, 0.3):
-            yield AT_POINT, disc(shape, view.point, share * min(shape))
     if view.boxed:
         yield "the box", _inscribed(~view.barred)
         yield "all of the box", ~view.barred
         return
     middle = (width - 1) / 2.0, (height - 1) / 2.0
     yield "the middle", disc(shape, middle, 0.3 * min(shape))
+
+
+def _round_point(view: View, rough: Rough) -> Iterator[tuple[str, BoolImage]]:
+    """Cut out what has the colours near the point, and again from that."""
+    if view.point is None:
+        return
+    shape = view.barred.shape
+    for share in _ROUND_POINT:
+        found = rough.cut(disc(shape, view.point, share * min(shape)))
+        for region in regions(found, view.point):
+            yield f"{AT_POINT}, cut again", rough.cut(region)
+        yield f"{AT_POINT}, cut", found
 
 
 def _rectangle(shape: tuple[int, ...], share: float) -> BoolImage:

@@ -47,7 +47,8 @@ class Quality:
     edge : float
         Share of the outline with a firm step of colour across it.
     steady : float
-        How far that step keeps its direction along the outline: 1 wholly, 0 as chance has it.
+        How far that step keeps its direction along the outline, or the inside its colour where
+        the ground has many: 1 wholly, 0 as chance has it.
     peak : float
         Share of the outline where no line alongside has a firmer step than it has nearby.
     separation : float
@@ -193,17 +194,31 @@ def edge_support(rim: Rim) -> tuple[float, float, float]:
     alongside = np.delete(size, np.s_[middle - 2 : middle + 3], axis=1).max(axis=1)
     return (
         float((at_edge > _FIRM_LAB)[free].mean()),
-        _steadiness(step[:, middle], free),
+        max(_steadiness(step[:, middle], free), _constancy(rim.colours, step[:, middle], free)),
         float((at_edge > alongside)[free].mean()),
     )
 
 
 def _steadiness(step: FloatImage, free: NDArray[np.bool_]) -> float:
+    size = _running(np.linalg.norm(step, axis=1, keepdims=True))[:, 0]
+    return float((np.linalg.norm(_running(step), axis=1) / np.maximum(size, 1e-6))[free].mean())
+
+
+def _constancy(colours: FloatImage, step: FloatImage, free: NDArray[np.bool_]) -> float:
+    """Say how little the colour just inside changes along an outline, against the step there."""
+    middle = colours.shape[1] // 2
+    inside = colours[:, middle - 3 : middle].mean(axis=1)
+    spread = np.linalg.norm(np.sqrt(np.maximum(_running(inside**2) - _running(inside) ** 2, 0.0)), axis=1)
+    size = _running(np.linalg.norm(step, axis=1, keepdims=True))[:, 0]
+    return float(np.clip(1.0 - spread / np.maximum(size, 1e-6), 0.0, 1.0)[free].mean())
+
+
+def _running(along: FloatImage) -> FloatImage:
+    """Average (N, C) values along a closed line."""
     weights = np.ones(_RUN_PX) / _RUN_PX
-    round_ = np.pad(step, ((_RUN_PX // 2, _RUN_PX // 2), (0, 0)), mode="wrap")
-    mean = np.stack([np.convolve(c, weights, mode="valid") for c in round_.T], axis=1)
-    size = np.convolve(np.linalg.norm(round_, axis=1), weights, mode="valid")
-    return float((np.linalg.norm(mean, axis=1) / np.maximum(size, 1e-6))[free].mean())
+    round_ = np.pad(along, ((_RUN_PX // 2, _RUN_PX // 2), (0, 0)), mode="wrap")
+    means = [np.convolve(c, weights, mode="valid") for c in round_.T]
+    return np.asarray(np.stack(means, axis=1), np.float32)
 
 
 def _colour_support(
