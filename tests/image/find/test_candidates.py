@@ -12,7 +12,7 @@ from benchmarks._composites import CUT_OUTS, GROUNDS, composite
 from profiletool.errors import NoObject, Unsure
 from profiletool.image.find.candidates import BELIEVED, find_candidates
 from profiletool.image.find.choice import different, doubt_of, fitting, refuse_another
-from profiletool.image.find.judge import Candidate
+from profiletool.image.find.judge import Candidate, Region, judged
 from profiletool.image.find.masks import overlap
 from profiletool.image.find.quality import Quality
 from profiletool.image.find.saliency import barrier, strangeness
@@ -164,6 +164,13 @@ def test_a_whole_goes_before_a_part_of_it() -> None:
     assert whole.quality.merit > part.quality.merit
 
 
+def test_a_whole_goes_before_its_clearer_part() -> None:
+    part = candidate(
+        disc(160, 120, 20) > 0.5, edge=1.0, peak=1.0, separation=1.0, ground=0.5, within=0.8
+    )
+    assert candidate(disc(160, 120, 80) > 0.5).quality.merit > part.quality.merit
+
+
 def test_a_sheet_gives_way_to_what_it_bears() -> None:
     bare, bearing = (candidate(disc(160, 120, 80) > 0.5, sheet=clear) for clear in (0.0, 0.9))
     assert bare.quality.merit > bearing.quality.merit + 1.0
@@ -204,9 +211,23 @@ def test_two_objects_alike_on_any_ground(ground: np.ndarray | None) -> None:
         find_silhouette(laid(disc(90, 110, 45) + disc(230, 110, 40), ground))
 
 
+def test_a_plain_picture_is_looked_at_once() -> None:
+    view = view_of(laid(disc(150, 110, 60)).rgb, np.zeros(SHAPE, bool))
+    assert [found.method for found in find_candidates(view)] == ["plain ground"]
+
+
+def test_what_several_methods_find_comes_first() -> None:
+    left, right = (disc(x, 119.5, 45) > 0.5 for x in (89.5, 229.5))
+    view = view_of(laid((left | right).astype(float), checks()).rgb, np.zeros(SHAPE, bool))
+    for often, odd in ((left, right), (right, left)):
+        votes = [Region(odd, "one"), Region(often, "two"), Region(often, "three")]
+        assert judged(view, votes, votes[:2])[0].mask is often
+
+
 def test_the_likeliest_comes_first() -> None:
     truth = disc(150, 110, 60)
-    found = find_candidates(view_of(laid(truth).rgb, np.zeros(SHAPE, bool)))
+    found = find_candidates(view_of(laid(truth, checks()).rgb, np.zeros(SHAPE, bool)))
+    assert len(found) > 1
     assert overlap(found[0].mask, truth > 0.5) > 0.97
     merits = [one.quality.merit for one in found]
     assert merits == sorted(merits, reverse=True)

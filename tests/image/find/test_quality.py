@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
 
 from profiletool.image.find.across import rim_of, steps
 from profiletool.image.find.colours import cells, histogram, likeness
+from profiletool.image.find.candidates import BELIEVED
+from profiletool.image.find.judge import Region, judged
 from profiletool.image.find.masks import overlap
 from profiletool.image.find.mosaic import cut, mosaic_of, polished
 from profiletool.image.find.quality import Quality, quality_of
@@ -39,8 +43,10 @@ def quality(rgb: np.ndarray, mask: np.ndarray) -> Quality:
 
 
 @pytest.mark.parametrize("ground", [np.array((200, 198, 190)), checks()])
-def test_the_true_mask_is_clear(ground: np.ndarray) -> None:
+def test_the_true_mask_is_believed(ground: np.ndarray) -> None:
     found = quality(picture(ground), disc())
+    assert found.confidence > 0.85
+    assert found.clear > 0.85
     assert found.edge > 0.99
     assert found.peak > 0.95
     assert found.steady > 0.97
@@ -68,10 +74,21 @@ def test_wrong_masks_are_not(ground: np.ndarray, name: str) -> None:
     assert found.merit < right.merit
 
 
+@pytest.mark.parametrize("name", WRONG)
+@pytest.mark.parametrize("ground", [np.array((200, 198, 190)), checks()])
+def test_beside_the_true_one_wrong_masks_are_not_believed(ground: np.ndarray, name: str) -> None:
+    both = [Region(disc(), "right"), Region(WRONG[name], "wrong")]
+    right, wrong = judged(view_of(picture(ground), np.zeros(SHAPE, bool)), both, both)
+    assert (right.method, wrong.method) == ("right", "wrong")
+    assert right.confidence > 0.7
+    assert wrong.confidence < min(BELIEVED, 0.6 * right.confidence)
+
+
 def test_nothing_speaks_for_a_mask_on_a_blank_picture() -> None:
     found = quality(np.full((*SHAPE, 3), 128, np.uint8), disc())
     assert (found.edge, found.separation) == pytest.approx((0.0, 0.0), abs=1e-6)
     assert found.clear < 1e-6
+    assert found.confidence < 0.05
 
 
 def test_shape_size_and_border_are_those_of_geometry() -> None:
@@ -82,6 +99,20 @@ def test_shape_size_and_border_are_those_of_geometry() -> None:
     assert quality(picture(), square).border == pytest.approx(0.5, abs=0.03)
     assert quality(picture(), square).four_cornered == 1.0
     assert whole.four_cornered == 0.0
+
+
+@pytest.mark.parametrize("name", ["share", "drawn_by"])
+def test_what_other_candidates_say_counts(name: str) -> None:
+    found = quality(picture(checks()), disc())
+    chances = [replace(found, **{name: value}).confidence for value in (0.1, 0.5, 1.0)]
+    assert chances == sorted(chances)
+    assert chances[2] > chances[0] + 0.1
+
+
+def test_a_learned_opinion_that_differs_is_doubt() -> None:
+    found = quality(picture(checks()), disc())
+    assert replace(found, learned=0.9).confidence == found.confidence
+    assert replace(found, learned=0.425).confidence == pytest.approx(0.5 * found.confidence)
 
 
 def test_colours_round_it_that_the_frame_does_not_show() -> None:

@@ -54,9 +54,15 @@ def laid(cover: np.ndarray, ground: object = (235, 235, 230), colour: object = (
 # --- what is found -------------------------------------------------------------------------
 
 
-def test_disc_on_plain_ground() -> None:
-    found = found_in(laid(disc(150, 110, 60)))
-    assert found.method == "two tones"
+SHADED = 235.0 - 60.0 * (X / SHAPE[1])[..., None] * np.ones(3)
+
+
+@pytest.mark.parametrize(
+    ("ground", "method"), [((235, 235, 230), "two tones"), (SHADED, "plain ground")]
+)
+def test_disc_on_plain_ground(ground: object, method: str) -> None:
+    found = found_in(laid(disc(150, 110, 60), ground))
+    assert found.method == method
     assert found.touches == frozenset()
     error = np.hypot(*(found.contour_px - (150, 110)).T) - 60
     assert np.sqrt(np.mean(error**2)) < 0.1
@@ -115,13 +121,18 @@ def test_checks_of_one_hue_are_passed_over() -> None:
     assert iou(found_in(laid(cover, checks, (220, 40, 160))).mask, cover >= 0.5) > 0.98
 
 
-@pytest.mark.parametrize(("colour", "cell"), [((240, 210, 40), 20), ((40, 110, 110), 10)])
-def test_ground_of_many_colours(colour: tuple[int, int, int], cell: int) -> None:
+@pytest.mark.parametrize(
+    ("colour", "cell", "method"),
+    [((240, 210, 40), 20, "plain ground"), ((40, 110, 110), 10, "texture")],
+)
+def test_ground_of_many_colours(colour: tuple[int, int, int], cell: int, method: str) -> None:
     paints = np.array([(30, 60, 200), (30, 170, 60), (20, 140, 150), (60, 60, 70)])
     cells = np.random.default_rng(3).integers(0, 4, (SHAPE[0] // cell, SHAPE[1] // cell))
     ground = np.kron(paints[cells], np.ones((cell, cell, 1)))
     cover = disc(160, 120, 60)
-    assert iou(found_in(laid(cover, ground, colour)).mask, cover >= 0.5) > 0.95
+    found = found_in(laid(cover, ground, colour))
+    assert found.method.startswith(method)
+    assert iou(found.mask, cover >= 0.5) > 0.95
 
 
 def test_same_picture_same_contour(shared: Path) -> None:
@@ -193,6 +204,7 @@ def test_rounded_corners_are_no_matte() -> None:
     alpha = np.full(SHAPE, 255, np.uint8)
     alpha[:4, :4] = alpha[-4:, -4:] = 0
     assert found_in(laid(disc(150, 110, 60)), alpha).method == "two tones"
+    assert found_in(laid(disc(150, 110, 60), SHADED), alpha).method == "plain ground"
 
 
 def test_matte_of_nothing_or_of_two() -> None:
