@@ -1,0 +1,172 @@
+"""Contact as a contribution to the potential energy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fem.arrays import FloatArray, IntArray
+from fem.contact.gap import Gap, Obstacle
+from fem.element import face_nodes, gauss, natural_nodes, shape
+from fem.items import Batch
+from fem.material import PAIRS
+from fem.mesh import Mesh
+
+PENALTY = 3.0  # MPa/mm
+RAMP_MM = 0.02  # of depth, over which the penalty sets in
+ORDERS = (6, 3)  # Gauss points of a face, around and along
+
+
+@dataclass(frozen=True)
+class Surface:
+    """Gauss points of a mesh's outer faces: L layers, c faces around, q points, m nodes.
+
+    Attributes
+    ----------
+    N : (q, m)
+        Shape functions.
+    area : (L, c, q), mm^2
+        At rest.
+    nodes : (L, c, m)
+    """
+
+    N: FloatArray
+    area: FloatArray
+    nodes: IntArray
+
+    @classmethod
+    def of(cls, mesh: Mesh) -> Surface:
+        """Lay the points out on a mesh."""
+        m = face_nodes(mesh.size.kind)
+        points, w = gauss(ORDERS)
+        N, dN = shape(natural_nodes(mesh.size.kind)[-m:, 1:], points)
+        first = np.arange(mesh.layers)[:, None, None] * (mesh.ring + mesh.mid)
+        nodes = first + mesh.outer
+        along = np.einsum("qnd,lcni->lcqdi", dN, mesh.X.reshape(-1, 3)[nodes])
+        area = np.linalg.norm(np.cross(along[..., 0, :], along[..., 1, :]), axis=-1)
+        return cls(N, w * area, nodes)
+
+    def points(self, x: FloatArray) -> FloatArray:
+        """Places of all points, (L, c, q, 3) mm, for nodes x (N, 3)."""
+        return np.asarray(self.N @ x[self.nodes])
+
+
+class Contact:
+    """Contact with an obstacle; makes the items of a mesh, as `fem.items.MakeItem` does.
+
+    Parameters
+    ----------
+    obstacle : Obstacle
+        Mirrored by x = 0 where a half model is to meet it.
+    penalty : float
+        MPa/mm.
+    ramp : float
+        mm of depth over which the penalty sets in.
+
+    Attributes
+    ----------
+    multiplier : (L, c, q), MPa, or None
+        Contact pressure that the points have without any depth; see `update`.
+    """
+
+    def __init__(self, obstacle: Obstacle, penalty: float = PENALTY, ramp: float = RAMP_MM) -> None:
+        self.obstacle, self.penalty, self.ramp = obstacle, penalty, ramp
+        self.multiplier: FloatArray | None = None
+
+    def __call__(self, mesh: Mesh) -> _Item:
+        """Give an item of a mesh; all items of it share the multipliers."""
+        return _Item(self, mesh)
+
+    def pressure(self, distance: FloatArray, multiplier: FloatArray | float) -> FloatArray:
+        """Contact pressure at points with gaps (...), MPa."""
+        return self.penalty * self._law(multiplier / self.penalty - distance)[1]
+
+    def _law(self, depth: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """psi, psi' and psi'' at depths: psi'' rises over the ramp from 0 to 1."""
+        d = self.ramp
+        part, over = np.clip(depth, 0.0, d), np.maximum(depth - d, 0.0)
+        slope = part / d
+        return (
+            part * part * slope / 6.0 + over * (0.5 * d + 0.5 * over),
+            0.5 * part * slope + over,
+            slope,
+        )
+
+    def update(self, mesh: Mesh, x: FloatArray) -> float:
+        """Take the contact pressure at nodes x for the multipliers; give the largest depth, mm."""
+        pressed = pressed_of(self, mesh, x)
+        self.multiplier = pressed.pressure
+        return max(0.0, -float(pressed.gap.distance.min()))
+
+
+@dataclass(frozen=True)
+class Pressed:
+    """What contact does at a state: L layers, c faces, q points.
+
+    Attributes
+    ----------
+    points : (L, c, q, 3) mm
+    gap : Gap
+        Of the points, in one row: (L c q, ...).
+    pressure : (L, c, q) MPa
+    area : (L, c, q) mm^2
+    """
+
+    points: FloatArray
+    gap: Gap
+    pressure: FloatArray
+    area: FloatArray
+
+    @cached_property
+    def force(self) -> FloatArray:
+        """Force on the obstacle by each point (L, c, q, 3), N."""
+        push = self.area * self.pressure
+        return np.asarray(-push[..., None] * self.gap.normal.reshape(self.points.shape))
+
+
+def pressed_of(contact: Contact, mesh: Mesh, x: FloatArray) -> Pressed:
+    """Read contact off a state with nodes x (layers + 1, ring + mid, 3), mm."""
+    surface = Surface.of(mesh)
+    points = surface.points(x.reshape(-1, 3))
+    gap = contact.obstacle.gap(points.reshape(-1, 3))
+    multiplier = 0.0 if contact.multiplier is None else contact.multiplier
+    pressure = contact.pressure(gap.distance.reshape(surface.area.shape), multiplier)
+    return Pressed(points, gap, pressure, surface.area)
+
+
+class _Item:
+    def __init__(self, contact: Contact, mesh: Mesh) -> None:
+        self._contact, self._surface = contact, Surface.of(mesh)
+
+    def add(self, batch: Batch) -> None:
+        """Add energy, forces and stiffness of a batch's faces that touch."""
+        contact, surface = self._contact, self._surface
+        layers = slice(batch.layers.start, batch.layers.stop)
+        points = np.asarray(surface.N @ batch.x[surface.nodes[layers]])  # (L, c, q, 3)
+        gap = contact.obstacle.gap(points.reshape(-1, 3))
+        depth = -gap.distance.reshape(points.shape[:3])
+        if contact.multiplier is not None:
+            depth = depth + contact.multiplier[layers] / contact.penalty
+        faces = np.nonzero((depth > 0.0).any(axis=2))  # (layer, around)
+        if not faces[0].size:
+            return
+        weight = contact.penalty * surface.area[layers][faces]  # (f, q)
+        psi, slope, curve = contact._law(depth[faces])
+        batch.sums.energy += float((weight * psi).sum())
+        normal = gap.normal.reshape(points.shape)[faces]
+        push = -(weight * slope)[..., None] * normal
+        forces = surface.N.T @ push  # (f, m, 3)
+        batch.add_forces(surface.nodes[layers][faces], np.moveaxis(forces, -1, 0))
+        if batch.skin is None:
+            return
+        bend = gap.bend.reshape(*points.shape, 3)[faces]
+        moduli = (weight * curve)[..., None, None] * normal[..., :, None] * normal[..., None, :]
+        moduli -= (weight * slope)[..., None, None] * bend
+        pairs = (surface.N[:, :, None] * surface.N[:, None, :]).reshape(len(surface.N), -1)
+        m = surface.N.shape[1]
+        layer, around = faces
+        for number, (i, k) in enumerate(PAIRS):
+            block = (moduli[..., i, k] @ pairs).reshape(-1, m, m)
+            batch.skin[number][around, layer] += block
