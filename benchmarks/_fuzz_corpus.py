@@ -11,6 +11,7 @@ from PIL import Image, ImageDraw, PngImagePlugin
 
 ROOT = Path(__file__).resolve().parents[1]
 _HOSTILE = ROOT.parent / "shared" / "hostile"
+_CASES = ROOT / "tests" / "cases" / "files"
 _SMALL = 40_000  # bytes of a hostile file that is damaged further
 SUFFIX = {
     "picture": ".png", "dxf": ".dxf", "svg": ".svg", "csv": ".csv", "toml": ".toml",
@@ -52,7 +53,17 @@ def _pictures() -> list[bytes]:
     made += [_picture("RGB", "WEBP"), _picture("RGBA", "WEBP", lossless=True)]
     made.append(_picture("RGB", "WEBP", save_all=True, append_images=more))
     made.append(_picture("P", "GIF"))
-    return made + _hostile()
+    return made + _hostile() + _cases(".png", ".tif", ".jpg")
+
+
+def _cases(*suffixes: str, rubber: bool = False) -> list[bytes]:
+    """Small files of people's kinds."""
+    files = sorted(path for path in _CASES.iterdir() if path.suffix in suffixes)
+    return [
+        path.read_bytes()
+        for path in files
+        if path.stat().st_size < _SMALL and path.name.startswith("rubber") == rubber
+    ]
 
 
 def _hostile() -> list[bytes]:
@@ -90,7 +101,7 @@ def _drawings() -> list[bytes]:
     )
     return [
         drawing("R12", 0, False), drawing("R2000", 4, False), drawing("R2000", 1, True),
-        *[short.encode()] * 3,
+        *[short.encode()] * 3, *_cases(".dxf"),
     ]  # fmt: skip
 
 
@@ -107,7 +118,8 @@ def _svgs() -> list[bytes]:
         "</svg><symbol id='s'><circle r='3'/></symbol><use href='#s'/>",
     )
     sizes = ('width="100mm" height="90mm" viewBox="0 0 100 90"', 'width="50%"', 'viewBox="0 0 9 9"')
-    return [f"{head}{size}>{body}</svg>".encode() for size in sizes for body in bodies]
+    made = [f"{head}{size}>{body}</svg>".encode() for size in sizes for body in bodies]
+    return made + _cases(".svg", ".svgz")
 
 
 def _points() -> list[bytes]:
@@ -116,7 +128,7 @@ def _points() -> list[bytes]:
         "x_mm,y_mm\n0,0\n9,0\n9,9\n0,9\n0,0\n",
         "0 0\n1 2\n3 9",
     )
-    return [text.encode() for text in texts]
+    return [text.encode() for text in texts] + _cases(".csv", ".txt")
 
 
 def _options() -> list[bytes]:
@@ -145,7 +157,8 @@ def _tests() -> list[bytes]:
     rows = [(1 + 0.05 * n, 0.39 * n * 0.05) for n in range(30)]
     plain = "".join(f"{a:.3f},{b:.4f}\n" for a, b in rows)
     percent = "".join(f"{a - 1:.3f};{1e3 * b:.4f}\n".replace(".", ",") for a, b in rows)
-    return [b"stretch,stress_MPa\n" + plain.encode(), b"Strain;Stress (kPa)\n" + percent.encode()]
+    made = [b"stretch,stress_MPa\n" + plain.encode(), b"Strain;Stress (kPa)\n" + percent.encode()]
+    return made + _cases(".csv", rubber=True)
 
 
 _MAKERS: dict[str, Callable[[], list[bytes]]] = {

@@ -16,7 +16,8 @@ import numpy as np
 from fem.arrays import FloatArray
 
 # Polyamide, thread of 0.25 mm: EA of one thread, and two turns of a 2 mm mesh.
-THREAD_EA = 2000.0 * np.pi / 4.0 * 0.25**2
+THREAD_E = 2000.0
+THREAD_EA = THREAD_E * np.pi / 4.0 * 0.25**2
 PAPER_STIFFNESS = THREAD_EA * 2 / 2.0
 
 _SLACK, _SLACK_OVER_WALL = 1e-3, 0.186

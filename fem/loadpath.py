@@ -34,8 +34,9 @@ class Options:
 
     Attributes
     ----------
-    tolerance, between : float
-        Residual over the pressure's forces at the last asked pressure, and at those before it.
+    tolerance, before, between : float
+        Residual over the pressure's forces at the last asked pressure, at those asked before it,
+        and at those in between.
     aim : float
         Residual that a prediction may have.
     first, smallest : float
@@ -51,6 +52,7 @@ class Options:
     """
 
     tolerance: float = 1e-6
+    before: float = 3e-3
     between: float = 3e-3
     aim: float = 0.15
     first: float = 0.02
@@ -100,9 +102,8 @@ class Path:
                 count = max(1, int(np.ceil((target - pressure) / step - 1e-6)))
                 asked = count == 1 and number <= len(pressures)
                 trial = target if count == 1 else pressure + (target - pressure) / count
-                state, first = self._try(
-                    trial, None, asked, tight=asked and number == len(pressures)
-                )
+                allowed = options.before if number < len(pressures) else options.tolerance
+                state, first = self._try(trial, None, allowed if asked else None)
                 if state is not None:
                     step = (trial - pressure) * _rate(options.aim / first)
                     self._careful = step < 5.0 * options.smallest * mu
@@ -128,11 +129,15 @@ class Path:
                     step = shorter
 
     def _try(
-        self, pressure: float, volume: float | None, asked: bool, *, tight: bool
+        self, pressure: float, volume: float | None, allowed: float | None
     ) -> tuple[Equilibrium | None, float]:
-        """Predict and correct; give the equilibrium and the prediction's residual."""
-        loose = bool(self._states) and not (tight or self._careful)
-        tolerance = self._options.between if loose else self._options.tolerance
+        """Predict and correct; give the equilibrium and the prediction's residual.
+
+        ``allowed`` is the residual that an asked state may have, None for one in between.
+        """
+        asked, tolerance = allowed is not None, allowed or self._options.between
+        if self._careful or not self._states:
+            tolerance = self._options.tolerance
         pose, pressure = self._predict(pressure, volume)
         done = correct(self._system, self._chart, pose, pressure, tolerance, volume)
         outcome: str = done.outcome
@@ -229,8 +234,8 @@ class Path:
         for _ in range(_LIMIT_STEPS):
             before = self._states[-1]
             volume = before.forces.volume + grow
-            asked = self.critical is not None
-            state, first = self._try(before.pressure, min(volume, end), asked, tight=asked)
+            allowed = self._options.tolerance if self.critical is not None else None
+            state, first = self._try(before.pressure, min(volume, end), allowed)
             if state is None:
                 grow *= 0.4
                 if grow < least:

@@ -14,7 +14,7 @@ from fem.equilibrium import Critical, Equilibrium, last_work
 from fem.errors import NotConverged
 from fem.items import MakeItem
 from fem.loadpath import DEFAULT_OPTIONS, Options, Path
-from fem.mesh import make_mesh
+from fem.mesh import Mesh, make_mesh
 from fem.meshsize import DEFAULT_MESH, MeshSize
 from fem.sections import Chart
 from fem.solution import Solution, state_of
@@ -60,11 +60,26 @@ def solve(
     ValueError
         When a pressure is negative or not finite.
     """
+    return solve_mesh(
+        make_mesh(actuator, size, whole),
+        pressures, options, threads=threads, progress=progress, extra=extra,
+    )  # fmt: skip
+
+
+def solve_mesh(
+    mesh: Mesh,
+    pressures: Sequence[float],
+    options: Options = DEFAULT_OPTIONS,
+    *,
+    threads: int = 2,
+    progress: Callable[[float], None] | None = None,
+    extra: Sequence[MakeItem] = (),
+) -> Solution:
+    """Inflate an actuator whose mesh is given; see `solve`."""
     asked = sorted({float(p) for p in pressures if p != 0.0})
     if not all(np.isfinite(asked)) or any(p < 0.0 for p in asked):
         raise ValueError("pressures must be finite numbers, 0 or above")
     begun = time.perf_counter()
-    mesh = make_mesh(actuator, size, whole)
     with blas.one_thread():
         system = System(mesh, threads, extra)
         try:

@@ -93,7 +93,7 @@ def _lines(
     if gauze.pitch is not None:
         return _single_lines(gauze, radius, columns, kind)
     points, w = np.polynomial.legendre.leggauss(size.orders[1])
-    parts = np.array([_covered(gauze, start, end, kind) for start, end in pairwise(columns)])
+    parts = np.array([covered(gauze, start, end, kind) for start, end in pairwise(columns)])
     a, b = parts[..., 0, None], parts[..., 1, None]
     eta = 0.5 * (a + b) + 0.5 * (b - a) * points
     width = 0.5 * (b - a) * w * (0.5 * radius * np.diff(columns)[:, None, None])
@@ -103,7 +103,7 @@ def _lines(
     return eta[:, keep].reshape(flat), width[:, keep].reshape(flat)
 
 
-def _covered(
+def covered(
     gauze: Gauze, start: float, end: float, window: Window | None
 ) -> list[tuple[float, float]]:
     """Give the covered parts of a face in eta, at most two."""

@@ -23,7 +23,7 @@ from profiletool.campaign.runs import JOINT_RUN
 from profiletool.campaign.store import Store, default_folder
 from profiletool.campaign.workers import run_all
 from profiletool.errors import UsageError
-from profiletool.files.formula import read_formula
+from profiletool.files.formula import formula_for, named_formula, read_formula
 from profiletool.joints.closest import spaced
 from profiletool.joints.optimal_method import optimal_plan
 from profiletool.joints.paper_method import paper_plan
@@ -36,6 +36,7 @@ from profiletool.records.making import check_request, request_of
 from profiletool.records.picture import Picture
 from profiletool.records.profile import DrawnLine, Profile
 from profiletool.records.request import Request
+from profiletool.records.seal import sealed
 from profiletool.subject.find import Subject
 from profiletool.subject.find import find_subject as find
 from profiletool.verify.check import Check, check, runs_into_itself, withdrawn
@@ -119,7 +120,7 @@ def plan_joints(profile: Profile, *, say: Say | None = None, **options: Any) -> 
     """
     request = request_for(profile, **options)
     check_request(request)
-    formula = read_formula(request.formula, request.extrapolate)
+    formula = formula_for(request)
     make = optimal_plan if request.method == "optimal" else paper_plan
     return make(request, profile, formula, say or _silence)
 
@@ -140,7 +141,8 @@ def verify_design(
     target : Profile, or (N, 2) mm
         What the object-facing line shall lie on, in the object frame.
     formula : Path, optional
-        For the formula's own angles; the paper's by default.
+        For the formula's own angles; by default the design's where it comes along, else the
+        paper's.
     progress : callable, optional
         Takes the pressure reached so far, bar.
 
@@ -157,14 +159,15 @@ def verify_design(
         The file holds no formula, or a joint bends out of the plane, which no formula follows.
     """
     points = np.asarray(target.points if isinstance(target, Profile) else target, dtype=float)
-    done = check(recomputed(design, points, read_formula(formula)), points, progress)
+    known = named_formula(design.formula.name) if formula is None else read_formula(formula)
+    done = check(recomputed(design, points, known), points, progress)
     if done.run is None or done.shape is None:
         return done
     if failure := runs_into_itself(done.run.verification.last):
         return withdrawn(done, failure)
     build = BuildErrors() if design.built is None else design.built.build
     verified, _ = with_errors(done.design, done.run, spaced(points), build)
-    return replace(done, design=verified)
+    return replace(done, design=sealed(verified))
 
 
 def derive_formula(

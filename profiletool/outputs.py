@@ -1,4 +1,4 @@
-"""Files of results, by registries: `DESIGN_FILES`, `FE_FILES` and `TEMPLATE_FILES`.
+"""Files of results, by registries: `DESIGN_FILES`, `FE_FILES`, `TEMPLATE_FILES`, `DECK_FILES`.
 
 A row gives a file's name and the function that writes it: one function and one row add a file.
 """
@@ -15,8 +15,10 @@ from profiletool.pipeline import Result
 from profiletool.profile.shape_csv import shape_csv
 from profiletool.records.design import Design
 from profiletool.records.options import in_flags
+from profiletool.records.seal import proven, sealed
 from profiletool.records.units import FloatArray
 from profiletool.report.candidates import draw_candidates
+from profiletool.report.deck import DECK_FILES, DeckOutput
 from profiletool.report.dossier import dossier_of, formula_marks
 from profiletool.report.error import error_figure
 from profiletool.report.fe_files import FE_FILES, MESH_FILES, THETA_FILES, FeOutput
@@ -97,10 +99,11 @@ class DesignOutput:
     @cached_property
     def mounting(self) -> Mounting:
         """The tube clamped beside its object, and the palm that is drilled for it."""
-        scene = self.scene
-        bent = scene.bent if scene.fe is None else scene.fe
-        profile = self.result.subject.profile
-        return mounting_drawing(self.result.design, profile, scene.straight, bent)
+        result, asked = self.result, self.result.request
+        stretch = asked.start_pct, asked.end_pct
+        return mounting_drawing(
+            result.design, result.profile, self.scene.straight, result.best_shape, stretch
+        )
 
     @cached_property
     def fe(self) -> FeOutput | None:
@@ -124,11 +127,14 @@ def _template_pdf(output: TemplateOutput) -> bytes:
 
 def _design_shapes(output: DesignOutput) -> bytes:
     result = output.result
-    lines = {"target": result.subject.profile.points, "formula": result.shape.facing}
+    profile = result.subject.profile
+    lines = {"target": profile.points, "formula": result.shape.facing}
     if result.plan.by != "formula":
         lines["response"] = result.plan.bent.facing
     if result.check is not None and result.check.shape is not None:
         lines["fe"] = result.check.shape.facing
+    if profile.outline is not None:
+        lines["outline"] = profile.outline
     return shape_csv(lines)
 
 
@@ -221,6 +227,13 @@ def template_files(
     return written(TEMPLATE_FILES, TemplateOutput(design, wish, paper, version))
 
 
+def deck_files(output: DeckOutput) -> dict[str, bytes]:
+    """Write a design's model for another code: name to content."""
+    ending = output.format.ending
+    rows = {name.format(ending=ending): write for name, write in DECK_FILES.items()}
+    return {**written(rows, output), "design.json": to_json(output.design).encode()}
+
+
 def candidates_png(unsure: Unsure) -> bytes:
     """Draw what the object could be, for a user who is asked to say."""
     return draw_candidates(unsure.rgb, unsure.candidates)
@@ -229,9 +242,10 @@ def candidates_png(unsure: Unsure) -> bytes:
 def _in_flags(result: Result) -> Result:
     """Name fields by flags in all that is said: the files are those of the command."""
     design = result.design
+    said = replace(design, warnings=tuple(in_flags(text) for text in design.warnings))
     return replace(
         result,
-        design=replace(design, warnings=tuple(in_flags(text) for text in design.warnings)),
+        design=sealed(said) if proven(design) else said,
         reasons=tuple(in_flags(text) for text in result.reasons),
         misses=tuple(replace(miss, reason=in_flags(miss.reason)) for miss in result.misses),
     )

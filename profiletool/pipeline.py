@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import html
+import itertools
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from formula.theta import Formula
-from profiletool.files.formula import read_formula
+from profiletool.files.formula import formula_for
+from profiletool.joints.again import edited, plan_again
 from profiletool.joints.closest import target_points
 from profiletool.joints.optimal_method import optimal_plan
 from profiletool.joints.paper_method import paper_plan
 from profiletool.records.design import Design
-from profiletool.records.making import check_request
+from profiletool.records.edit import Edit
+from profiletool.records.making import check_request, request_again
+from profiletool.records.picture import Scale
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request
+from profiletool.records.seal import sealed
 from profiletool.subject.find import Subject, find_subject
 from profiletool.verdict.draft import Draft, attempt_of
 from profiletool.verdict.holds import holding
@@ -27,6 +32,8 @@ from profiletool.verify.errors import with_errors
 from profiletool.verify.forward import FeForwardModel
 from profiletool.verify.run import Progress
 
+_CHOSEN, _CORRECTED = 0.35, 0.85  # shares of the time that are gone once joints are so far
+_LEFT = 0.85  # of a correction is left after each actuator that finite elements bent
 _STABLE_SHARE = 0.94  # of the pressure at which FE loses its stability: 5 % more must stand
 
 
@@ -69,6 +76,20 @@ class Result(Draft):
         return f"<pre>{html.escape(str(self))}</pre>"
 
 
+def _forward(request: Request, progress: Progress) -> FeForwardModel:
+    """Give the forward model of a correction, which tells how far that is."""
+    bent = itertools.count()
+
+    def told() -> None:
+        progress(_CORRECTED - (_CORRECTED - _CHOSEN) * _LEFT ** next(bent))
+
+    return FeForwardModel(request.tube, request.model, told)
+
+
+def _silent(share: float) -> None:
+    del share
+
+
 def run(request: Request, say: Callable[[str], None], progress: Progress | None = None) -> Result:
     """Design an actuator for a picture or a drawn profile.
 
@@ -78,7 +99,7 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
     say : callable
         Takes one line of progress at a time.
     progress : callable, optional
-        Takes the share of the finite-element run that is done, 0 to 1.
+        Takes the share of all that is done, 0 to 1, about in proportion to the time.
 
     Returns
     -------
@@ -91,7 +112,9 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
         Of the class whose exit code fits.
     """
     check_request(request)
-    formula = read_formula(request.formula, request.extrapolate)
+    formula = formula_for(request)
+    progress = progress or _silent
+    progress(0.0)
     subject = find_subject(request, say)
     attempt = _attempt(request, subject, formula, say, progress)
     lower = _lower(attempt)
@@ -102,22 +125,72 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
     return _judged(_with_errors(replace(attempt, request=request)))
 
 
+def run_again(
+    design: Design,
+    profile: Profile,
+    formula: Formula,
+    say: Callable[[str], None],
+    progress: Progress | None = None,
+    *,
+    edit: Edit | None = None,
+    refine: bool = False,
+) -> Result:
+    """Take a design up again: change or correct it where asked, verify it and judge it anew.
+
+    Parameters
+    ----------
+    design : Design
+        Its joints by their places; the rest follows from them.
+    profile : Profile
+    formula : Formula
+        For the angles of the table.
+    say, progress : callable
+        As for `run`.
+    edit : Edit, optional
+        A change by hand.
+    refine : bool
+        Whether finite elements correct the joints, in whole threads and millimetres.
+
+    Raises
+    ------
+    ProfiletoolError
+        Such as UsageError for a change that cannot be built, and UnreadableInput where a joint
+        bends out of the plane.
+    """
+    design = design if edit is None else edited(design, edit)
+    request = request_again(design, profile, refine)
+    check_request(request)
+    source = design.source
+    subject = Subject(None, None, Scale(source.mm_per_px or 1.0, "vector"), None, profile)
+    progress = progress or _silent
+    progress(0.0)
+    forward = _forward(request, progress) if refine else None
+    plan = plan_again(design, request, profile, formula, say, forward)
+    attempt = attempt_of(request, subject, formula, plan)
+    attempt = replace(attempt, design=replace(attempt.design, source=source, method=design.method))
+    checked = _verified(attempt.design, profile, say, progress)
+    return _judged(_with_errors(holding(replace(attempt, design=checked.design, check=checked))))
+
+
 def _attempt(
     request: Request,
     subject: Subject,
     formula: Formula,
     say: Callable[[str], None],
-    progress: Progress | None,
+    progress: Progress,
 ) -> Draft:
-    profile, spec = subject.profile, request.tube
+    profile = subject.profile
     if request.method == "optimal":
-        forward = FeForwardModel(spec, request.model) if request.verify and request.refine else None
+        forward = _forward(request, progress) if request.verify and request.refine else None
         plan = optimal_plan(request, profile, formula, say, forward)
     else:
         plan = paper_plan(request, profile, formula, say)
     attempt = attempt_of(request, subject, formula, plan)
     if not request.verify:
         return attempt
+    if plan.hopeless:
+        say(plan.hopeless)
+        return replace(attempt, plan=replace(plan, notes=(*plan.notes, plan.hopeless)))
     checked = _verified(attempt.design, profile, say, progress)
     return holding(replace(attempt, design=checked.design, check=checked))
 
@@ -135,11 +208,10 @@ def _lower(attempt: Draft) -> Request | None:
 
 
 def _verified(
-    design: Design, profile: Profile, say: Callable[[str], None], progress: Progress | None
+    design: Design, profile: Profile, say: Callable[[str], None], progress: Progress
 ) -> Check:
     def share(reached_bar: float) -> None:
-        if progress is not None:
-            progress(reached_bar / design.pressure_bar)
+        progress(_CORRECTED + (1.0 - _CORRECTED) * reached_bar / design.pressure_bar)
 
     say(f"finite elements: the whole actuator to {design.pressure_bar:.2f} bar")
     return check(design, profile.points, share)
@@ -160,5 +232,5 @@ def _judged(attempt: Draft) -> Result:
     misses = misses_of(attempt)
     reasons = reasons_of(attempt, misses)
     notes = notes_of(attempt, reasons, misses)
-    design = replace(attempt.design, feasible=not reasons, warnings=notes)
+    design = sealed(replace(attempt.design, feasible=not reasons, warnings=notes))
     return Result(**vars(replace(attempt, design=design)), reasons=reasons, misses=misses)

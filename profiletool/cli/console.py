@@ -8,7 +8,7 @@ import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -16,9 +16,28 @@ from profiletool.errors import ProfiletoolError, UsageError
 from profiletool.records.built import BuildErrors, build_errors
 from profiletool.records.options import in_flags
 
-Debug = Annotated[bool, typer.Option("--debug", help="Show the full traceback of an error.")]
-Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
-Quiet = Annotated[bool, typer.Option("--quiet", help="No progress on stderr.")]
+if TYPE_CHECKING:
+    from profiletool.records.design import Design
+
+OUTPUT = "Output"  # panel of the help
+KEPT = "stopped: nothing was written"
+
+Debug = Annotated[
+    bool,
+    typer.Option("--debug", help="Show the full traceback of an error.", rich_help_panel=OUTPUT),
+]
+Json = Annotated[
+    bool, typer.Option("--json", help="Print the result as JSON.", rich_help_panel=OUTPUT)
+]
+Quiet = Annotated[
+    bool, typer.Option("--quiet", help="No progress on stderr.", rich_help_panel=OUTPUT)
+]
+Force = Annotated[
+    bool, typer.Option("--force", help="Replace an earlier result.", rich_help_panel=OUTPUT)
+]
+DesignFile = Annotated[
+    Path, typer.Argument(metavar="DESIGN.json", help="A design.json, or the folder that holds one.")
+]
 FormulaFile = Annotated[
     Path | None, typer.Option("--formula", help="A formula file, or by name paper (default) or fe.")
 ]
@@ -33,10 +52,13 @@ Extrapolate = Annotated[
 
 
 @contextmanager
-def exit_codes(debug: bool) -> Iterator[None]:
-    """Turn our errors into one line on stderr and their exit code."""
+def exit_codes(debug: bool, kept: str = KEPT) -> Iterator[None]:
+    """Turn our errors into one line on stderr and their exit code; ``kept`` is for Ctrl-C."""
     try:
         yield
+    except KeyboardInterrupt:
+        typer.echo(kept, err=True)
+        raise typer.Exit(130) from None
     except ProfiletoolError as error:
         if debug:
             traceback.print_exc()
@@ -50,6 +72,16 @@ def exit_codes(debug: bool) -> Iterator[None]:
         what = " ".join(f"{type(error).__name__}: {error}".split())
         typer.echo(f"error: a fault in profiletool ({what}); run again with --debug", err=True)
         raise typer.Exit(1) from error
+
+
+def design_file(given: Path) -> Path:
+    """Give the design.json that is meant: the file, or that of a folder."""
+    return given / "design.json" if given.is_dir() else given
+
+
+def changed_notes(design: Design) -> list[str]:
+    """Give the notes of a design that was changed since finite elements verified it."""
+    return [text for text in design.warnings[:1] if text.startswith("NOT VERIFIED: it was changed")]
 
 
 def speaker(quiet: bool) -> Callable[[str], None]:

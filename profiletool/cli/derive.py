@@ -11,6 +11,7 @@ import typer
 
 from profiletool.cli.console import (
     Debug,
+    Force,
     Numbers,
     Quiet,
     ascending,
@@ -24,6 +25,9 @@ from profiletool.errors import UsageError
 
 if TYPE_CHECKING:
     from profiletool.campaign.derive import CampaignPlan, Derivation
+
+
+_KEPT = "stopped: every finished run is kept; the same command goes on from there"
 
 
 @dataclass(frozen=True)
@@ -79,7 +83,7 @@ class Campaign:
     report: Annotated[
         Path | None, typer.Option(help="Folder for the figures and the table of residuals.")
     ] = None
-    force: Annotated[bool, typer.Option("--force", help="Replace earlier results.")] = False
+    force: Force = False
     quiet: Quiet = False
     debug: Debug = False
 
@@ -90,7 +94,7 @@ def derive(**options: Any) -> None:
     Every finished run is kept: a campaign that was stopped goes on where it was.
     """
     asked = Campaign(**options)
-    with exit_codes(asked.debug):
+    with exit_codes(asked.debug, _KEPT):
         if asked.rubber == "list":
             from profiletool.rubber.presets import presets_text
 

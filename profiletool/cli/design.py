@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from profiletool.cli.config import take_config
-from profiletool.cli.console import Debug, Quiet, exit_codes, progress_bar, speaker
+from profiletool.cli.console import OUTPUT, Debug, Force, Quiet, exit_codes, progress_bar, speaker
 from profiletool.cli.rows import parameters_of, parameters_of_rows, with_signature
 from profiletool.cli.template import Date, Kerf, Paper
 from profiletool.errors import Infeasible, NoObject, NotVerified, Unsure
@@ -29,17 +28,16 @@ class Delivery:
     kerf: Kerf = 0.0
     date: Date = ""
     paper: Paper = "a4"
-    config: Annotated[
+    out: Annotated[
         Path | None,
         typer.Option(
-            callback=take_config, is_eager=True, help="TOML file with any of these options."
+            help="Output folder (default: PICTURE's name + _design).", rich_help_panel=OUTPUT
         ),
     ] = None
-    out: Annotated[
-        Path | None, typer.Option(help="Output folder (default: PICTURE's name + _design).")
-    ] = None
-    force: Annotated[bool, typer.Option("--force", help="Replace an earlier design.")] = False
-    as_json: Annotated[bool, typer.Option("--json", help="Print design.json on stdout.")] = False
+    force: Force = False
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print design.json on stdout.", rich_help_panel=OUTPUT)
+    ] = False
     quiet: Quiet = False
     debug: Debug = False
 
@@ -72,7 +70,7 @@ def design(
         check_kerf(wish.kerf_mm, request.tube.pitch_mm, request.tube.thread_mm)
         say = speaker(delivery.quiet)
         try:
-            with progress_bar("finite elements", delivery.quiet) as progress:
+            with progress_bar("design", delivery.quiet, left=True) as progress:
                 result = pipeline.run(request, say, progress)
         except Unsure as unsure:
             name = f"{delivery.out or picture.stem}_candidates"
@@ -86,13 +84,13 @@ def design(
         as_json = delivery.as_json
         text = files["design.json"].decode() if as_json else joint_table(result.design)
         typer.echo(text, nl=False)
-        _conclude(result, folder, say)
+        conclude(result, folder, say)
 
 
 with_signature(design, parameters_of(design), parameters_of_rows(DESIGN), parameters_of(Delivery))
 
 
-def _conclude(result: Result, folder: Path, say: Callable[[str], None]) -> None:
+def conclude(result: Result, folder: Path, say: Callable[[str], None]) -> None:
     """Print the notes, and end with the exit code of what is wrong with the design.
 
     Raises

@@ -11,27 +11,48 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from profiletool.cli.console import Debug, Json, Quiet, exit_codes, progress_bar, speaker
+from profiletool.cli.console import (
+    OUTPUT,
+    Debug,
+    Force,
+    Json,
+    Quiet,
+    exit_codes,
+    progress_bar,
+    speaker,
+)
 from profiletool.cli.rows import parameters_of, parameters_of_rows, with_signature
-from profiletool.cli.samples import SampleOptions, sampled, taken
 from profiletool.errors import Infeasible, NotVerified, UnreadableInput, UsageError
 from profiletool.records.making import model_of
 from profiletool.records.model import PAPER_MODEL, ModelInputs
 from profiletool.records.options import MODEL
 
 if TYPE_CHECKING:
+    from formula.theta import Formula
     from profiletool.records.built import BuiltMisfit
-    from profiletool.records.design import Design
     from profiletool.records.fe import Verification
-    from profiletool.subject.recall import Target
+    from profiletool.records.request import TubeSpec
 
 _MOST_BAR = 20.0  # ten times what the tube bears
 
 Out = Annotated[
-    Path | None, typer.Option(help="Folder for tables, pictures and the deformed mesh.")
+    Path | None,
+    typer.Option(help="Folder for tables, pictures and the deformed mesh.", rich_help_panel=OUTPUT),
 ]
-Force = Annotated[bool, typer.Option("--force", help="Replace an earlier folder of results.")]
 Pressure = Annotated[float, typer.Option(help="Highest pressure, bar; ten equal steps lead there.")]
+
+
+RubberName = Annotated[
+    str | None,
+    typer.Option(help="The rubber, as derive takes it: a preset, LAW:CONSTANTS, or a CSV."),
+]
+FormulaBeside = Annotated[
+    Path | None,
+    typer.Option(
+        "--formula",
+        help="A formula file, or by name paper or fe: its tube and rubber, and its angles beside.",
+    ),
+]
 
 
 def joint(
@@ -41,8 +62,15 @@ def joint(
     alpha_center: Annotated[
         float, typer.Option(help="Middle of the uncut sector, deg: 270 toward the object, 90 away.")
     ] = 270.0,
-    diameter: Annotated[float, typer.Option(help="Outer diameter of the tube, mm.")] = 20.0,
-    wall: Annotated[float, typer.Option(help="Wall of the tube, mm.")] = 2.0,
+    diameter: Annotated[
+        float | None,
+        typer.Option(help="Outer diameter of the tube, mm (default: the formula's, 20)."),
+    ] = None,
+    wall: Annotated[
+        float | None, typer.Option(help="Wall of the tube, mm (default: the formula's, 2).")
+    ] = None,
+    rubber: RubberName = None,
+    formula: FormulaBeside = None,
     out: Out = None,
     force: Force = False,
     as_json: Json = False,
@@ -53,37 +81,42 @@ def joint(
     """Run finite elements of one joint, Root = F1 = 30 mm."""
     with exit_codes(debug):
         model = model_of(options, PAPER_MODEL)
-        _check_run(pressure, out, force)
+        check_run(pressure, out, force)
         if not 0.0 <= alpha_center <= 360.0:
             raise UsageError(f"--alpha-center must be 0 to 360, not {alpha_center:g}")
         from profiletool import outputs
         from profiletool.files import write
-        from profiletool.records.request import TubeSpec
-        from profiletool.report.fe import fe_json, fe_text
-        from profiletool.verify.run import DOWN, LYING, inflate, pressures_to
+        from profiletool.report.fe import fe_json, fe_text, formula_json, formula_text
+        from profiletool.verify.run import DOWN, LYING, breaking, inflate, pressures_to
         from profiletool.verify.tube import joint_actuator
 
-        spec = TubeSpec(outer_diameter_mm=diameter, wall_mm=wall)
-        with _failures(UsageError), _bar(pressure, quiet) as progress:
+        known = _formula(formula)
+        spec = _spec(known, rubber, outer_diameter_mm=diameter, wall_mm=wall)
+        with failures(UsageError), bar(pressure, quiet) as progress:
             actuator = joint_actuator(openF, alpha, alpha_center, spec, model)
             run = inflate(actuator, pressures_to(pressure), LYING, DOWN, progress=progress)
+        run = breaking(run, spec.rubber)
         found = run.verification
         what = (
             f"one joint: openF {openF:g} mm, alpha_closed {alpha:g} deg, "
             f"alpha_center {alpha_center:g} deg{_beside(model)}"
         )
-        told = fe_json(found, _model_json(model))
-        typer.echo(told if as_json else f"{what}\n{fe_text(found)}", nl=False)
+        cuts = [(openF, alpha)]
+        told = fe_json(found, model_json(model) | formula_json(found, known, cuts))
+        text = f"{what}\n{fe_text(found)}{formula_text(found, known, cuts)}"
+        typer.echo(told if as_json else text, nl=False)
         if out is not None:
             write.write_folder(out, outputs.fe_files(run, what, told), force)
             speaker(quiet)(f"written: {out}")
-        _end(found)
+        end(found)
 
 
 def finger(
     pressure: Annotated[
         float, typer.Option(help="Highest pressure, bar; steps of 0.1 bar lead there.")
     ] = 2.3,
+    rubber: RubberName = None,
+    formula: FormulaBeside = None,
     out: Out = None,
     force: Force = False,
     as_json: Json = False,
@@ -94,126 +127,65 @@ def finger(
     """Run finite elements of the paper's three-joint finger (Table 2)."""
     with exit_codes(debug):
         model = model_of(options, PAPER_MODEL)
-        _check_run(pressure, out, force)
+        check_run(pressure, out, force)
         from profiletool import outputs
         from profiletool.files import write
-        from profiletool.report.fe import fe_json, fe_text, ranges_json, ranges_text
-        from profiletool.verify.run import DOWN, LYING, inflate, pressures_to
-        from profiletool.verify.tube import finger_actuator
+        from profiletool.report.fe import (
+            fe_json,
+            fe_text,
+            formula_json,
+            formula_text,
+            ranges_json,
+            ranges_text,
+        )
+        from profiletool.verify.run import DOWN, LYING, breaking, inflate, pressures_to
+        from profiletool.verify.tube import FINGER, finger_actuator
 
-        with _failures(UsageError), _bar(pressure, quiet) as progress:
+        known = _formula(formula)
+        spec = _spec(known, rubber)
+        with failures(UsageError), bar(pressure, quiet) as progress:
             asked = pressures_to(pressure, 0.1)
-            run = inflate(finger_actuator(model), asked, LYING, DOWN, progress=progress)
+            run = inflate(finger_actuator(model, spec), asked, LYING, DOWN, progress=progress)
+        run = breaking(run, spec.rubber)
         found = run.verification
-        told = fe_json(found, ranges_json(found) | _model_json(model))
-        text = f"the paper's finger (Table 2){_beside(model)}\n{fe_text(found)}{ranges_text(found)}"
+        more = ranges_json(found) | model_json(model) | formula_json(found, known, FINGER)
+        told = fe_json(found, more)
+        text = (
+            f"the paper's finger (Table 2){_beside(model)}\n{fe_text(found)}{ranges_text(found)}"
+            f"{formula_text(found, known, FINGER)}"
+        )
         typer.echo(told if as_json else text, nl=False)
         if out is not None:
             title = "the paper's finger"
             files = outputs.fe_files(run, title, told, trajectories=True)
             write.write_folder(out, files, force)
             speaker(quiet)(f"written: {out}")
-        _end(found)
-
-
-def verify(
-    file: Annotated[Path, typer.Argument(metavar="DESIGN.json", help="A design.json.")],
-    pressure: Annotated[
-        float | None,
-        typer.Option(help="Highest pressure, bar (default: the design's own); ten equal steps."),
-    ] = None,
-    threads: Annotated[
-        bool,
-        typer.Option(
-            "--threads", help="Run the single threads of each sector, too, beside the smeared."
-        ),
-    ] = False,
-    out: Out = None,
-    force: Force = False,
-    as_json: Json = False,
-    quiet: Quiet = False,
-    debug: Debug = False,
-    **options: Any,
-) -> None:
-    """Run finite elements of a whole actuator, and compare it with its target.
-
-    The target is taken from the shape.csv beside DESIGN.json, or from the drawing that the
-    design was made from.
-    """
-    with exit_codes(debug):
-        _check_run(pressure, out, force)
-        from profiletool import outputs
-        from profiletool.files import write
-        from profiletool.files.design_json import load_design
-        from profiletool.report.dossier import formula_marks
-        from profiletool.report.fe import fe_json
-        from profiletool.report.sampled import samples_text, samples_tree
-        from profiletool.subject.recall import target_of
-        from profiletool.verify.run import run_design
-
-        asked = taken(options)
-        design = load_design(file)
-        design = replace(design, model=model_of(options, design.model))
-        most = design.pressure_bar if pressure is None else pressure
-        _check_run(most, None, force)
-        wrong = UnreadableInput if design.feasible else Infeasible
-        with _failures(wrong, f"{file}: "), _bar(most, quiet) as progress:
-            run = run_design(design, most, progress)
-        found = run.verification
-        target = target_of(design, file)
-        more, text = _compared(design, found, target, threads)
-        if asked.samples is not None:
-            points = None if target is None or pressure is not None else target.points
-            both = sampled(design, run, points, asked, quiet)
-            more |= samples_tree(*both)
-            text += samples_text(*both)
-        told = fe_json(found, more)
-        typer.echo(told if as_json else text, nl=False)
-        if out is not None:
-            points = None if target is None else target.points
-            marks = formula_marks(design)
-            files = outputs.fe_files(run, design.source.file, told, points, marks)
-            write.write_folder(out, files, force)
-            speaker(quiet)(f"written: {out}")
-        _end(found)
-
-
-def _compared(
-    design: Design, found: Verification, target: Target | None, threads: bool
-) -> tuple[dict[str, Any], str]:
-    """Compare a run with its target, and the smeared gauze with single threads: JSON and text."""
-    from profiletool.joints.misfit import misfit_to
-    from profiletool.report.fe import compared_text, fe_text, misfit_json
-
-    off = None if target is None else misfit_to(found.last.shape, target.points)
-    beside = None if target is None else target.file
-    apart = _single_threads(design) if threads else None
-    more = misfit_json(off, beside) | _model_json(design.model, apart)
-    text = fe_text(found) + compared_text(design, found, off, beside)
-    return more, text + _model_text(design.model, apart)
+        end(found)
 
 
 for _command in (joint, finger):
     with_signature(_command, parameters_of(_command), parameters_of_rows(MODEL))
-with_signature(
-    verify, parameters_of(verify), parameters_of(SampleOptions), parameters_of_rows(MODEL)
-)
 
 
-def _single_threads(design: Design) -> BuiltMisfit:
-    """Say how far the sheet's threads move the shape, at the design's own pressure.
+def _formula(formula: Path | None) -> Formula | None:
+    """Read the formula to compare with, where one is named."""
+    from profiletool.files.formula import read_formula
 
-    Raises
-    ------
-    NotVerified
-    """
-    from fem.errors import FemError
-    from profiletool.verify.threads import sheet_off
+    return None if formula is None else read_formula(formula)
 
-    try:
-        return sheet_off(design)
-    except FemError as error:
-        raise NotVerified(f"with single threads: {error}") from error
+
+def _spec(known: Formula | None, rubber: str | None, **sizes: float | None) -> TubeSpec:
+    """Give the tube: what is given, else the formula's, else the paper's."""
+    from profiletool.records.request import TubeSpec
+    from profiletool.rubber.presets import parse_rubber
+
+    spec = TubeSpec()
+    if known is not None:
+        spec = TubeSpec(known.outer_diameter_mm, known.wall_mm, rubber=known.rubber)
+    given: dict[str, Any] = {k: size for k, size in sizes.items() if size is not None}
+    if rubber is not None:
+        spec = replace(spec, rubber=parse_rubber(rubber).record)
+    return replace(spec, **given)
 
 
 def _beside(model: ModelInputs) -> str:
@@ -221,24 +193,13 @@ def _beside(model: ModelInputs) -> str:
     return f"; {model}" if str(model) else ""
 
 
-def _model_json(model: ModelInputs, apart: BuiltMisfit | None = None) -> dict[str, Any]:
+def model_json(model: ModelInputs, apart: BuiltMisfit | None = None) -> dict[str, Any]:
     """Make the entries of fe.json for a model that is not the paper's, and for single threads."""
     entries = {} if model == PAPER_MODEL else {"model": asdict(model)}
     return entries if apart is None else {**entries, "threads_off_mm": asdict(apart)}
 
 
-def _model_text(model: ModelInputs, apart: BuiltMisfit | None) -> str:
-    """Say what of the model is not the paper's, and what single threads do."""
-    text = f"not the paper's model: {model}\n" if str(model) else ""
-    if apart is not None:
-        text += (
-            f"single threads lie {apart.as_set:.2f} mm RMS off the smeared gauze, "
-            f"{apart.trimmed:.2f} once the pressure is set\n"
-        )
-    return text
-
-
-def _check_run(pressure: float | None, out: Path | None, force: bool) -> None:
+def check_run(pressure: float | None, out: Path | None, force: bool) -> None:
     """Refuse what cannot be run or written, before it takes any time."""
     if pressure is not None and not (math.isfinite(pressure) and 0.0 < pressure <= _MOST_BAR):
         raise UsageError(
@@ -251,7 +212,7 @@ def _check_run(pressure: float | None, out: Path | None, force: bool) -> None:
 
 
 @contextmanager
-def _failures(
+def failures(
     geometry: type[UsageError] | type[UnreadableInput] | type[Infeasible], where: str = ""
 ) -> Iterator[None]:
     """Turn what finite elements raise into our errors."""
@@ -267,7 +228,7 @@ def _failures(
 
 
 @contextmanager
-def _bar(most: float, quiet: bool) -> Iterator[Callable[[float], None]]:
+def bar(most: float, quiet: bool) -> Iterator[Callable[[float], None]]:
     """Show how far the pressure has come, bar."""
     with progress_bar("finite elements", quiet) as show:
 
@@ -278,7 +239,7 @@ def _bar(most: float, quiet: bool) -> Iterator[Callable[[float], None]]:
         yield told
 
 
-def _end(found: Verification) -> None:
+def end(found: Verification) -> None:
     """Say so where a run ended early, or would end a little above the pressure asked for.
 
     Raises

@@ -35,6 +35,25 @@ def parameters_of(source: Callable[..., Any]) -> list[inspect.Parameter]:
     ]
 
 
+_HOLDERS = {
+    "scale": "Size of the object",
+    "look": "Finding the object",
+    "tube": "Tube",
+    "model": "Finite elements",
+}
+_FIELDS = {
+    **dict.fromkeys(("side", "start_pct", "end_pct", "clearance_mm"), "What to follow"),
+    **dict.fromkeys(("formula", "extrapolate"), "Tube"),
+    **dict.fromkeys(("verify", "refine"), "Finite elements"),
+}
+
+
+def panel_of(row: Option) -> str:
+    """Name the panel of the help that an option stands in."""
+    holder, _, field = row.path.rpartition(".")
+    return _HOLDERS.get(holder) or _FIELDS.get(field, "Method")
+
+
 def parameters_of_rows(rows: Iterable[Option]) -> list[inspect.Parameter]:
     """Parameters for rows of options; each is named by its row's field."""
     usual = Request(Path())
@@ -59,7 +78,9 @@ def _default(row: Option, usual: Request) -> Any:
 def _annotation(row: Option) -> Any:
     """Annotation as typer reads it."""
     kind = row.kind
-    words: dict[str, Any] = {"help": row.help, "metavar": row.metavar}
+    words: dict[str, Any] = {
+        "help": row.help, "metavar": row.metavar, "rich_help_panel": panel_of(row),
+    }  # fmt: skip
     if kind.count:
         parse = {1: turn, 2: two, 4: four}[kind.count]
         return Annotated[Numbers | None, typer.Option(row.flag, parser=parse, **words)]

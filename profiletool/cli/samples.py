@@ -79,10 +79,9 @@ def sampled(
     from profiletool.campaign.builds import sample_builds
     from profiletool.campaign.store import Store, default_folder
     from profiletool.campaign.workers import run_all
-    from profiletool.joints.closest import spaced
     from profiletool.records.built import BuildErrors
     from profiletool.verify.built import built_of
-    from profiletool.verify.fields import fields_of
+    from profiletool.verify.fields import even_points, fields_of
 
     if target is None or not run.verification.converged:
         raise UsageError(
@@ -90,7 +89,7 @@ def sampled(
             "pressure; leave --pressure away"
         )
     build = BuildErrors() if design.built is None else design.built.build
-    points = spaced(target)
+    points = even_points(target)
     fields = fields_of(design, run, points)
     if fields is None:
         raise UnreadableInput("finite elements lose their stability here: nothing to sample about")

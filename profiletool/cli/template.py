@@ -7,19 +7,37 @@ from typing import Annotated, Literal
 
 import typer
 
-from profiletool.cli.console import Debug, Quiet, exit_codes, speaker
+from profiletool.cli.console import (
+    OUTPUT,
+    Debug,
+    DesignFile,
+    Force,
+    Quiet,
+    changed_notes,
+    design_file,
+    exit_codes,
+    speaker,
+)
 
 Paper = Annotated[
-    Literal["a4", "letter"], typer.Option(help="Pages of the PDFs; larger pieces are tiled.")
+    Literal["a4", "letter"],
+    typer.Option(help="Pages of the PDFs; larger pieces are tiled.", rich_help_panel=OUTPUT),
 ]
 Kerf = Annotated[
-    float, typer.Option(help="Width that the beam or blade takes away, mm: lines move by half.")
+    float,
+    typer.Option(
+        help="Width that the beam or blade takes away, mm: lines move by half.",
+        rich_help_panel=OUTPUT,
+    ),
 ]
-Date = Annotated[str, typer.Option(help="Date to print on the template, in any form.")]
+Date = Annotated[
+    str,
+    typer.Option(help="Date to print on the template, in any form.", rich_help_panel=OUTPUT),
+]
 
 
 def template(
-    file: Annotated[Path, typer.Argument(metavar="DESIGN.json", help="A design.json.")],
+    file: DesignFile,
     variant: Annotated[
         Literal["gauze", "sleeve", "strip"],
         typer.Option(
@@ -35,9 +53,9 @@ def template(
         typer.Option(help="Version of the DXF; R12 knows no units: tell its reader mm."),
     ] = "R2000",
     out: Annotated[
-        Path | None, typer.Option(help="Output folder (default: name + _template).")
+        Path | None, typer.Option(help="Output folder (default: the object's name + _template).")
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace an earlier template.")] = False,
+    force: Force = False,
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
@@ -49,20 +67,23 @@ def template(
         from profiletool.template.kerf import check_kerf
         from profiletool.template.kinds import Wish
 
-        folder = out or Path(f"{file.stem}_template")
+        made = load_design(design_file(file))
+        folder = out or Path(f"{Path(made.source.file).stem}_template")
         write.check_free(folder, force)
-        made = load_design(file)
+        say = speaker(quiet)
+        for note in changed_notes(made):
+            say(f"note: {note}")
         check_kerf(kerf, made.gauze.pitch_mm, made.gauze.thread_mm)
         files = outputs.template_files(made, Wish(variant, kerf, date), paper, dxf)
         files["design.json"] = to_json(made).encode()
         write.write_folder(folder, files, force)
-        speaker(quiet)(f"written: {folder}")
+        say(f"written: {folder}")
 
 
 def sheet(
     paper: Paper = "a4",
     out: Annotated[Path | None, typer.Option(help="File (default: sheet_ + paper + .pdf).")] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace an earlier file.")] = False,
+    force: Force = False,
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:

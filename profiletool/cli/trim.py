@@ -7,12 +7,12 @@ from typing import Annotated
 
 import typer
 
-from profiletool.cli.console import Debug, Json, Numbers, exit_codes, two
+from profiletool.cli.console import Debug, DesignFile, Json, Numbers, design_file, exit_codes, two
 from profiletool.errors import Infeasible, UnreadableInput, UsageError
 
 
 def trim(
-    file: Annotated[Path, typer.Argument(metavar="DESIGN.json", help="A design.json.")],
+    file: DesignFile,
     tip: Annotated[
         Numbers | None,
         typer.Option(
@@ -45,6 +45,7 @@ def trim(
         from profiletool.report.setting import setting_json, setting_text
         from profiletool.verify.setting import by_angles, by_tip
 
+        file = design_file(file)
         design = load_design(file)
         readings = () if angles is None else read_angles(angles)
         try:

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
+from collections.abc import Iterator
+from dataclasses import asdict, replace
+from functools import cache
+from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from formula.rubber import read_rubber
 from profiletool.errors import UnreadableInput, UsageError
@@ -13,16 +16,22 @@ from profiletool.files.read import read_file
 from profiletool.records.design import Design
 from profiletool.records.model import check_model
 from profiletool.records.rubber import law_of
+from profiletool.records.seal import proven, values_of
 
-SCHEMA = "profiletool.design/2"
-_READ = (SCHEMA, "profiletool.design/1")  # the first has no `built`, `trim` and `model`
-_DECIMALS = 6  # a nanometre; keeps the last bits of the arithmetic out of the file
+if TYPE_CHECKING:
+    from pydantic import TypeAdapter
+
+SCHEMA = "profiletool.design/3"
+# Older files have no seal, those of the first no `built`, `trim` and `model`.
+_READ = (SCHEMA, "profiletool.design/2", "profiletool.design/1")
+_SAME_MM = 0.001  # facts that are stored twice agree to this
+EDITED = "NOT VERIFIED: {} since finite elements verified it; the command report verifies it anew"
 _MOST_BYTES = 5_000_000
 
 
 def to_json(design: Design) -> str:
     """Write a design as design.json: the same design gives the same bytes."""
-    tree = {"schema": SCHEMA, **_rounded(asdict(design))}
+    tree = {"schema": SCHEMA, **values_of(design)}
     return json.dumps(tree, indent=1, allow_nan=False) + "\n"
 
 
@@ -32,24 +41,35 @@ def from_json(text: str | bytes, file: str) -> Design:
     Raises
     ------
     UnreadableInput
-        Naming the file and the first field that is missing or makes no sense.
+        Naming the file and the first field that is missing, unknown or makes no sense.
     """
-    from pydantic import TypeAdapter, ValidationError  # heavy, and writing does not need it
+    from pydantic import ValidationError  # heavy, and writing does not need it
 
     try:
-        tree = json.loads(text, parse_constant=_refuse_constant)
+        tree = json.loads(
+            text, parse_constant=_refuse_constant, object_pairs_hook=_refuse_duplicates
+        )
     except (ValueError, RecursionError) as error:
         raise UnreadableInput(f"{file} is not JSON: {error}") from error
     if not isinstance(tree, dict) or tree.get("schema") not in _READ:
         raise UnreadableInput(f'{file} is no design: its "schema" is not "{SCHEMA}"')
     try:
-        design = TypeAdapter(Design).validate_python(_with_law(tree, file))
+        design = _schema().validate_python(_with_law(tree, file))
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])
         raise UnreadableInput(f"{file}: {where}: {first['msg']}") from error
+    for path in _unknown(tree, {"schema": "", **asdict(design)}):
+        raise UnreadableInput(f"{file}: {path}: no key of a design")
     _check(design, file)
-    return design
+    return _judged(design, str(tree["schema"]))
+
+
+@cache
+def _schema() -> TypeAdapter[Design]:
+    from pydantic import TypeAdapter
+
+    return TypeAdapter(Design)
 
 
 def load_design(path: Path | str) -> Design:
@@ -91,14 +111,34 @@ def _refuse_constant(name: str) -> float:
     raise ValueError(f"{name} is no number")
 
 
-def _rounded(value: Any) -> Any:
-    if isinstance(value, float):
-        return round(value, _DECIMALS) + 0.0  # no "-0.0"
-    if isinstance(value, dict):
-        return {key: _rounded(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_rounded(item) for item in value]
-    return value
+def _refuse_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    tree = dict(pairs)
+    if len(tree) < len(pairs):
+        names = [name for name, _ in pairs]
+        raise ValueError(f"the key {max(names, key=names.count)!r} stands twice in one place")
+    return tree
+
+
+def _unknown(tree: Any, known: Any, path: str = "") -> Iterator[str]:
+    """Yield the keys of a tree that a design does not have; a rubber's constants are its own."""
+    if isinstance(tree, dict) and isinstance(known, dict) and path != "tube.rubber":
+        for key, value in tree.items():
+            here = f"{path}.{key}" if path else key
+            if key in known:
+                yield from _unknown(value, known[key], here)
+            else:
+                yield here
+    elif isinstance(tree, list) and isinstance(known, list | tuple):
+        for k, (one, other) in enumerate(zip(tree, known, strict=True)):
+            yield from _unknown(one, other, f"{path}.{k}")
+
+
+def _judged(design: Design, schema: str) -> Design:
+    """Take the verdict back where the design is not the one that was verified."""
+    if not design.verified or proven(design):
+        return design
+    why = "it was changed" if schema == SCHEMA else "nothing tells whether it was changed"
+    return replace(design, verified=False, warnings=(EDITED.format(why), *design.warnings))
 
 
 def _check(design: Design, file: str) -> None:
@@ -140,3 +180,23 @@ def _check(design: Design, file: str) -> None:
         raise UnreadableInput(
             f"{file}: joint {design.joints[-1].number} lies beyond the tube's end"
         )
+    _check_twice(design, file)
+
+
+def _check_twice(design: Design, file: str) -> None:
+    """Compare the facts that a design holds twice: joints' places and the lengths between them."""
+    joints, tube = design.joints, design.tube
+    said = [("tube.root_mm", tube.root_mm, joints[0].centre_mm)]
+    said += [
+        (f"F_mm of joint {a.number}", a.F_mm, b.centre_mm - a.centre_mm)
+        for a, b in pairwise(joints)
+    ]
+    for what, value, places in said:
+        if not abs(value - places) <= _SAME_MM:
+            raise UnreadableInput(
+                f"{file}: {what} is {value:g} mm, by the joints' places (centre_mm) {places:g}: "
+                "change both, or let the command edit do it"
+            )
+    last = joints[-1]
+    if not last.F_mm <= tube.length_mm - last.centre_mm + _SAME_MM:
+        raise UnreadableInput(f"{file}: F_mm of joint {last.number} goes beyond the tube's end")

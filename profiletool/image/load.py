@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-import math
 import struct
 import warnings
-import zlib
 from pathlib import Path
 from typing import NoReturn
 
@@ -17,9 +15,16 @@ from PIL import Image, UnidentifiedImageError
 
 from profiletool.errors import UnreadableInput, UsageError
 from profiletool.files.read import check_file
+from profiletool.image.heif import HEIF_EXTRA, with_heif
+from profiletool.image.stored import (
+    DAMAGE,
+    orientation,
+    pixel_aspect,
+    stored_focal_px,
+    stored_mm_per_px,
+)
 from profiletool.image.structure import check_structure
 from profiletool.records.picture import Picture
-from profiletool.records.units import MM_PER_INCH
 
 MAX_PIXELS = 64_000_000
 MAX_PIXELS_OF = {"WEBP": 36_000_000}  # decoded in several copies: they shall fit in a gibibyte
@@ -28,28 +33,9 @@ MIN_SIDE_PX = 16
 FORMATS = ("PNG", "JPEG", "TIFF", "BMP", "WEBP")  # JPEG takes in multi-picture MPO
 _ASK_FOR = "save it as PNG, JPEG, TIFF, BMP or WebP"
 
-# What Pillow's decoders throw on damaged data, apart from UnidentifiedImageError.
-_DAMAGE = (
-    OSError,
-    SyntaxError,
-    ValueError,
-    TypeError,
-    KeyError,
-    IndexError,
-    AttributeError,
-    OverflowError,
-    EOFError,
-    MemoryError,
-    NotImplementedError,
-    RuntimeError,
-    struct.error,
-    zlib.error,
-)
-_ORIENTATION_TAG = 0x0112
-_EXIF_TAG, _FOCAL_35_TAG, _DIAGONAL_35_MM = 0x8769, 0xA405, 43.27
 _BITS_TAG, _PHOTOMETRIC_TAG, _WHITE_IS_ZERO = 258, 262, 0
-# Written by programs that know no resolution, as whole dpi or as whole pixels per metre.
-_MEANINGLESS_DPI = (72.0, 96.0)
+_DEPTHS = (8, 10, 12, 14, 16)  # bits of sensors, whose values stand in 16 bits as they are
+_ALMOST_BLACK = 16  # of 255: what 12 bits of 16 look like once shortened
 
 
 def load_picture(path: Path) -> Picture:
@@ -63,8 +49,9 @@ def load_picture(path: Path) -> Picture:
     Returns
     -------
     Picture
-        EXIF orientation applied; 16 bit scaled to 8; the colour of transparent pixels as stored;
-        ``mm_per_px`` only from PNG and TIFF, in mm per pixel; ``focal_px`` from EXIF.
+        EXIF orientation applied; 16 bit scaled to 8; pixels that are not square stretched; the
+        colour of transparent pixels as stored; ``mm_per_px`` only from PNG and TIFF, in mm per
+        pixel, and not from cameras and screens; ``focal_px`` from EXIF.
 
     Raises
     ------
@@ -72,31 +59,41 @@ def load_picture(path: Path) -> Picture:
         The file is missing, no picture, damaged, too large or of a kind that is not supported.
     """
     _check_file(path)
+    formats = (*FORMATS, "HEIF") if _is_heif(path) and with_heif() else FORMATS
     # Pillow warns of oversized pictures, odd metadata and palettes: the size is checked here, and
     # the rest is of no use to the reader of a one-line message.
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            with Image.open(path, formats=FORMATS) as image:
+            with Image.open(path, formats=formats) as image:
                 _check_size(path, image)
                 image.load()
                 rgb, alpha = _channels(path, image)
-                turn = _orientation(image)
-                mm_per_px = _stored_mm_per_px(image)
-                focal_px = _stored_focal_px(image)
+                turn = orientation(image)
+                aspect = pixel_aspect(image)
+                mm_per_px = stored_mm_per_px(image)
+                focal_px = stored_focal_px(image)
                 kind = image.format or ""
+                notes = _several(image)
         except UnidentifiedImageError:
             _refuse(path, f"not a picture that can be read{_looks_like(path)}; {_ASK_FOR}")
         except Image.DecompressionBombError:
             _refuse_size(path, MAX_PIXELS)
-        except _DAMAGE as error:
+        except DAMAGE as error:
             _refuse(path, f"damaged or truncated ({error}); export the picture again")
+    if alpha is None and 0 < rgb.max() < _ALMOST_BLACK:
+        _refuse(path, "almost black, as 12 bit values in 16 are; export it with its full range")
+    if aspect != 1.0:
+        rgb = _square(path, rgb, aspect)
+        alpha = None if alpha is None else _square(path, alpha, aspect)
+        notes += (f"its pixels are {aspect:.3g} times as high as wide: it was stretched",)
     return Picture(
         rgb=_upright(rgb, turn),
         alpha=None if alpha is None else _upright(alpha, turn),
         mm_per_px=mm_per_px,
         format=kind,
         focal_px=focal_px,
+        notes=notes,
     )
 
 
@@ -165,11 +162,27 @@ def _check_size(path: Path, image: Image.Image) -> None:
         _refuse(path, f"only {width} x {height} pixels; use a larger picture")
 
 
-def _looks_like(path: Path) -> str:
+def _is_heif(path: Path) -> bool:
     with path.open("rb") as file:
         head = file.read(12)
-    known = {b"GIF8": "GIF", b"%PDF": "PDF", b"<svg": "SVG", b"<?xm": "XML", b"8BPS": "Photoshop"}
-    name = known.get(head[:4], "HEIC or AVIF" if head[4:8] == b"ftyp" else "")
+    return head[4:8] == b"ftyp" and head[8:12] != b"avif"
+
+
+def _looks_like(path: Path) -> str:
+    with path.open("rb") as file:
+        head = file.read(512)
+    known = {
+        b"GIF8": "GIF", b"%PDF": "PDF", b"8BPS": "Photoshop", b"\x1f\x8b\x08": "packed: unpack it",
+        b"II*\0\x10\0\0\0CR": "camera raw", b"%!PS": "PostScript", b"PK": "a ZIP archive",
+        b"AC10": "DWG: save it as DXF", b"solid": "STL", b"ISO-10303": "STEP",
+    }  # fmt: skip
+    name = next((name for magic, name in known.items() if head.startswith(magic)), "")
+    if b"<svg" in head or b"<?xml" in head[:8]:
+        name = "SVG: name it .svg"
+    elif head[:30].split()[:2] == [b"0", b"SECTION"]:
+        name = "DXF: name it .dxf"
+    elif head[4:8] == b"ftyp":
+        name = "AVIF" if head[8:12] == b"avif" else f"HEIC, which takes {HEIF_EXTRA}"
     return f" (looks like {name})" if name else ""
 
 
@@ -185,7 +198,23 @@ def _channels(path: Path, image: Image.Image) -> tuple[NDArray[np.uint8], NDArra
     _shorten_deep_transparency(image)
     rgba = np.asarray(image if image.mode == "RGBA" else image.convert("RGBA"))
     alpha = rgba[..., 3].copy()
-    return rgba[..., :3].copy(), alpha if alpha.min() < 255 else None
+    meaningless = image.format == "BMP" and alpha.max() == 0  # most programs write no alpha there
+    return rgba[..., :3].copy(), None if meaningless or alpha.min() == 255 else alpha
+
+
+def _several(image: Image.Image) -> tuple[str, ...]:
+    """Say that a file holds more pictures than the one that is read, a camera's previews apart."""
+    count = 1 if image.format == "MPO" else getattr(image, "n_frames", 1)
+    return () if count == 1 else (f"the file holds {count} pictures: the first was taken",)
+
+
+def _square(path: Path, pixels: NDArray[np.uint8], aspect: float) -> NDArray[np.uint8]:
+    """Stretch pixels that are ``aspect`` times as high as wide along their longer side."""
+    height, width = pixels.shape[:2]
+    size = (width, round(height * aspect)) if aspect > 1.0 else (round(width / aspect), height)
+    if size[0] * size[1] > MAX_PIXELS:
+        _refuse_size(path, MAX_PIXELS)
+    return np.asarray(cv2.resize(pixels, size, interpolation=cv2.INTER_LINEAR), np.uint8)
 
 
 def _shorten_deep_transparency(image: Image.Image) -> None:
@@ -202,9 +231,10 @@ def _deep_grey(
     values = np.asarray(image)
     tags = getattr(image, "tag_v2", {})
     bits = min(tags.get(_BITS_TAG, (16,))[0], 16)
-    top = (1 << bits) - 1
-    if values.min() < 0 or values.max() > top:
+    if values.min() < 0 or values.max() > (1 << bits) - 1:
         _refuse(path, f"holds more than 16 bits per pixel; {_ASK_FOR} with 8 or 16 bits")
+    bits = next((b for b in _DEPTHS if values.max() < 1 << b), bits) if bits == 16 else bits
+    top = (1 << bits) - 1
     lookup = np.round(np.arange(top + 1) * (255.0 / top)).astype(np.uint8)
     if tags.get(_PHOTOMETRIC_TAG) == _WHITE_IS_ZERO:
         lookup = lookup[::-1]
@@ -213,13 +243,6 @@ def _deep_grey(
     if not isinstance(transparent, int) or not (values == transparent).any():
         return rgb, None
     return rgb, np.where(values == transparent, 0, 255).astype(np.uint8)
-
-
-def _orientation(image: Image.Image) -> int:
-    try:
-        return int(image.getexif().get(_ORIENTATION_TAG, 1))
-    except _DAMAGE:  # damaged metadata does not spoil a sound picture
-        return 1
 
 
 def _upright(pixels: NDArray[np.uint8], orientation: int) -> NDArray[np.uint8]:
@@ -231,30 +254,3 @@ def _upright(pixels: NDArray[np.uint8], orientation: int) -> NDArray[np.uint8]:
     if orientation in (3, 4, 7, 8):
         pixels = pixels[::-1]
     return np.ascontiguousarray(pixels)
-
-
-def _stored_mm_per_px(image: Image.Image) -> float | None:
-    if image.format not in ("PNG", "TIFF"):
-        return None
-    try:
-        x_dpi, y_dpi = (float(value) for value in image.info.get("dpi", (0.0, 0.0)))
-    except (TypeError, ValueError, ZeroDivisionError):
-        return None
-    if not (math.isfinite(x_dpi) and math.isfinite(y_dpi) and min(x_dpi, y_dpi) > 0.0):
-        return None
-    if not math.isclose(x_dpi, y_dpi, rel_tol=1e-3):
-        return None
-    if any(abs(x_dpi - dpi) < 0.5 for dpi in _MEANINGLESS_DPI):
-        return None
-    return MM_PER_INCH / x_dpi
-
-
-def _stored_focal_px(image: Image.Image) -> float | None:
-    """Focal length in pixels from its 35 mm equivalent, which refers to the picture's diagonal."""
-    try:
-        equivalent = float(image.getexif().get_ifd(_EXIF_TAG).get(_FOCAL_35_TAG, 0.0))
-    except _DAMAGE:
-        return None
-    if not (math.isfinite(equivalent) and equivalent > 0.0):
-        return None
-    return equivalent / _DIAGONAL_35_MM * math.hypot(*image.size)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from profiletool.records.picture import Picture
 from profiletool.records.units import FloatArray
 
+DICTIONARY = int(cv2.aruco.DICT_4X4_50)
 # The white margin printed round a marker is about two of its six cells wide.
 _QUIET_ZONE = 2.5 / 6.0
 
@@ -23,7 +24,7 @@ def find_markers(picture: Picture) -> list[FloatArray]:
     """
     settings = cv2.aruco.DetectorParameters()
     settings.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_SUBPIX
-    dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50)
+    dictionary = cv2.aruco.getPredefinedDictionary(DICTIONARY)
     grey = cv2.cvtColor(picture.rgb, cv2.COLOR_RGB2GRAY)
     corners = cv2.aruco.ArucoDetector(dictionary, settings).detectMarkers(grey)[0]
     return [np.asarray(quad, np.float64).reshape(4, 2) for quad in corners]

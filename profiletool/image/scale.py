@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 
+import cv2
 import numpy as np
 
 from profiletool.errors import NoScale, UsageError
 from profiletool.image.find.masks import thickness
 from profiletool.image.marker import find_markers
+from profiletool.image.marker_faults import is_clear, why_unread
 from profiletool.image.sheet.parallax import (
     LARGEST_SHARE,
     PRINT_SHARE,
@@ -21,6 +23,7 @@ from profiletool.image.sheet.parallax import (
 from profiletool.records.making import check_scale
 from profiletool.records.picture import Picture, Scale, Silhouette
 from profiletool.records.request import ScaleRequest
+from profiletool.records.units import FloatArray
 
 _AGREEMENT = 0.02  # markers, and the sides of one, differ by less or are not trusted
 _SQUARENESS = 0.1
@@ -29,7 +32,9 @@ _SCANNER_SHARE = 0.005
 _FAR_OFF = 4.0  # factor that unknown lenses and cropped pictures may make of a distance
 
 
-def scale_of(picture: Picture, silhouette: Silhouette, request: ScaleRequest) -> Scale:
+def scale_of(
+    picture: Picture, silhouette: Silhouette, request: ScaleRequest, flat: bool = False
+) -> Scale:
     """Settle the scale of a picture.
 
     Parameters
@@ -40,6 +45,8 @@ def scale_of(picture: Picture, silhouette: Silhouette, request: ScaleRequest) ->
         Its contour's extent is the object's height and width.
     request : ScaleRequest
         What the user gave.
+    flat : bool
+        Whether the object is flat and lies in a marker's plane.
 
     Returns
     -------
@@ -66,6 +73,8 @@ def scale_of(picture: Picture, silhouette: Silhouette, request: ScaleRequest) ->
     if request.mm_per_px is not None:
         return Scale(request.mm_per_px, "mm-per-px")
     if request.marker_mm is not None:
+        if flat:
+            return marker_scale(picture, request.marker_mm)
         thin_px = thickness(silhouette.contour_px)
         return _marker_scale(picture, thin_px, request.marker_mm, request.camera_distance_mm)
     if picture.mm_per_px is not None:
@@ -116,17 +125,46 @@ def _marker_scale(
         parallax = 1.0 / shrinkage(t, distance) - 1.0 + left.shape
         return Scale(k, "marker", math.hypot(corners, parallax))
     share = math.hypot(corners, left.distance, left.shape)
-    return Scale(k * shrinkage(t, distance), "marker", share)
+    near = shrinkage(t, distance)
+    return Scale(k * near, "marker", share, 2.0 * t, 1.0 / near - 1.0)
+
+
+def markers_for(picture: Picture, asked: ScaleRequest) -> list[FloatArray]:
+    """Find the markers of a picture whose scale may be a marker's, (4, 2) px each.
+
+    Raises
+    ------
+    NoScale
+        The scale hangs on a marker, and none is read or none is clear.
+    """
+    if asked.marker_mm is None:
+        return []
+    if asked.height_mm is None and asked.width_mm is None and asked.mm_per_px is None:
+        _clear_markers(picture)
+    return find_markers(picture)
+
+
+def _clear_markers(picture: Picture) -> list[FloatArray]:
+    markers = find_markers(picture)
+    if not markers:
+        why = why_unread(picture)
+        raise NoScale(
+            f"no ArUco DICT_4X4_50 marker was read{f': {why}' if why else ''}; show it whole, "
+            "sharp and with its white margin, or give `height_mm` or `width_mm`"
+        )
+    grey = np.asarray(cv2.cvtColor(picture.rgb, cv2.COLOR_RGB2GRAY), np.uint8)
+    clear = [quad for quad in markers if is_clear(grey, quad)]
+    if not clear:
+        raise NoScale(
+            "something touches or covers the marker's edge, which makes its size wrong; leave its "
+            "white margin free, or give `height_mm` or `width_mm`"
+        )
+    return clear
 
 
 def _marker_side_px(picture: Picture) -> tuple[float, float]:
     """Mean side of the markers, px, and by how much of it the sides scatter."""
-    markers = find_markers(picture)
-    if not markers:
-        raise NoScale(
-            "no ArUco DICT_4X4_50 marker found; show it whole, sharp and with its white margin, "
-            "or give `height_mm` or `width_mm`"
-        )
+    markers = _clear_markers(picture)
     sides = np.array([np.hypot(*(np.roll(quad, -1, axis=0) - quad).T) for quad in markers])
     if (np.ptp(sides, axis=1) > _SQUARENESS * sides.mean(axis=1)).any():
         raise NoScale(

@@ -12,10 +12,11 @@ MAX_PARTS = 20_000  # chunks of a PNG, strips or tiles of a TIFF; 64 megapixels 
 MAX_SCANS = 50  # of a JPEG; a progressive one has about ten
 _COUNTED_TAGS = (273, 279, 324, 325)  # offsets and sizes of strips and tiles
 _MAX_TAGS = 1000
+_FORMS = {3: "H", 4: "I", 16: "Q"}  # of numbers, by the type in a tag
 
 
 def check_structure(path: Path) -> None:
-    """Refuse a picture file of absurdly many parts.
+    """Refuse a picture file of absurdly many parts, and a TIFF that points outside itself.
 
     Raises
     ------
@@ -49,12 +50,35 @@ def _check_png(file: BinaryIO) -> None:
 def _check_tiff(file: BinaryIO, head: bytes) -> None:
     order = "<" if head.startswith(b"II") else ">"
     big = struct.unpack(order + "H", head[2:4])[0] == 43  # BigTIFF
-    count_form, entry_form = (order + "Q", order + "HHQQ") if big else (order + "H", order + "HHII")
+    count_form, entry_form = (order + "Q", order + "HHQ") if big else (order + "H", order + "HHI")
     (place,) = struct.unpack_from(order + ("Q" if big else "I"), head, 8 if big else 4)
-    file.seek(place)
-    (tags,) = struct.unpack(count_form, file.read(struct.calcsize(count_form)))
+    end, room = file.seek(0, 2), 8 if big else 4
+    (tags,) = struct.unpack(count_form, _part(file, place, struct.calcsize(count_form), end))
+    place += struct.calcsize(count_form)
     size = struct.calcsize(entry_form)
+    parts: dict[int, tuple[int, ...]] = {}
     for _ in range(min(tags, _MAX_TAGS)):
-        tag, _, count, _ = struct.unpack(entry_form, file.read(size))
-        if tag in _COUNTED_TAGS and count > MAX_PARTS:
-            raise UnreadableInput(f"a TIFF of more than {MAX_PARTS} strips; save it again")
+        tag, kind, count = struct.unpack(entry_form, _part(file, place, size, end))
+        if tag in _COUNTED_TAGS and kind in _FORMS:
+            if count > MAX_PARTS:
+                raise UnreadableInput(f"a TIFF of more than {MAX_PARTS} strips; save it again")
+            form = f"{order}{count}{_FORMS[kind]}"
+            at = place + size
+            if struct.calcsize(form) > room:
+                (at,) = struct.unpack(order + "IQ"[big], _part(file, at, room, end))
+            parts[tag] = struct.unpack(form, _part(file, at, struct.calcsize(form), end))
+        place += size + room
+    for offsets, sizes in ((273, 279), (324, 325)):
+        for k, start in enumerate(parts.get(offsets, ())):
+            given = parts.get(sizes, ())
+            _part(file, start, given[k] if k < len(given) else 0, end, read=False)
+
+
+def _part(file: BinaryIO, place: int, size: int, end: int, read: bool = True) -> bytes:
+    """Read a part that a TIFF points to."""
+    if place + size > end:
+        raise UnreadableInput(
+            "a TIFF that points outside itself, cut off or damaged; save it again"
+        )
+    file.seek(place)
+    return file.read(size) if read else b""

@@ -14,7 +14,7 @@ from profiletool.bending.constant_curvature import FormulaModel
 from profiletool.bending.model import Chain, Model
 from profiletool.bending.response import Response
 from profiletool.errors import UsageError
-from profiletool.joints.bounds import PRESSURE_STEP
+from profiletool.joints.bounds import PRESSURE_STEP, Limits
 from profiletool.joints.correction.by_model import BendingForwardModel
 from profiletool.joints.correction.correct import (
     CannotBend,
@@ -26,7 +26,7 @@ from profiletool.joints.correction.parameters import PosedChain, parameters_of
 from profiletool.joints.expected import Aim, ErrorSizes, Expected, error_sizes
 from profiletool.joints.layout import Layout
 from profiletool.joints.optimal.choose import TOLERANCE_MM, Choice, ChoiceOptions, choose
-from profiletool.joints.plan import Plan
+from profiletool.joints.plan import Plan, out_of_reach
 from profiletool.profile.curve import points_at
 from profiletool.records.design import AWAY_DEG, TOWARD_DEG, Joint
 from profiletool.records.frames import Shape
@@ -70,23 +70,24 @@ def optimal_plan(
     Infeasible
         When no joints follow the profile even roughly.
     """
-    model = _model(request, formula)
+    model = model_of(request, formula)
     if request.tube.max_pressure_bar < BAR_PER_MPA * model.pressure[0]:
         raise UsageError(
             f"`max_pressure_bar` {request.tube.max_pressure_bar:g} bar is less than the "
             f"{BAR_PER_MPA * model.pressure[0]:g} bar from which on the joints are known by the "
             f"{_by(model)}"
         )
-    posed, choice, notes = _standing(request, profile, model, say, forward)
+    posed, choice, notes, hopeless = _standing(request, profile, model, say, forward)
     bent = model.shape(posed.chain, posed.pressure, posed.pose, profile.sign)
     return Plan(
         layout=_layout(posed, choice, bent, model, formula),
         by=_by(model),
         bent=bent,
-        places=_places(bent, posed.chain, profile),
+        places=places_of(bent, posed.chain, profile),
         notes=notes,
         choice=choice,
         model=model,
+        hopeless=hopeless,
     )
 
 
@@ -96,16 +97,16 @@ def _standing(
     model: Model,
     say: Callable[[str], None],
     forward: ForwardModel[S] | None,
-) -> tuple[PosedChain, Choice, tuple[str, ...]]:
+) -> tuple[PosedChain, Choice, tuple[str, ...], str]:
     """Choose and correct joints; where the forward model cannot bend them, again at less pressure.
 
-    Where it cannot bend the second choice either, that stays as the bending model corrects it.
-    The notes say so.
+    Where it cannot bend the second choice either, or the first is out of reach, that stays as the
+    bending model corrects it. The notes say so, and the last why it is out of reach.
     """
 
     def by_model(choice: Choice) -> PosedChain:
         bending = BendingForwardModel(model)
-        return _corrected(request, bending, profile, model, choice, lambda line: None)
+        return corrected(request, bending, profile, model, start_of(choice), lambda line: None)
 
     def say_fe(line: str) -> None:
         say(f"finite elements, {line}")
@@ -117,11 +118,12 @@ def _standing(
             f"joints: {len(choice.chain.openF)} at {BAR_PER_MPA * choice.pressure:.2f} bar, "
             f"{choice.misfit.rms_mm:.2f} mm RMS off the profile by the {_by(model)}"
         )
-        if forward is None:
-            return by_model(choice), choice, ()
+        hopeless = out_of_reach(profile.length_mm, choice.misfit.rms_mm, request)
+        if forward is None or hopeless:
+            return by_model(choice), choice, tuple(notes), hopeless
         try:
-            posed = _corrected(request, forward, profile, model, choice, say_fe)
-            return posed, choice, tuple(notes)
+            posed = corrected(request, forward, profile, model, start_of(choice), say_fe)
+            return posed, choice, tuple(notes), ""
         except CannotBend as problem:
             notes.append(f"the first choice of joints did not stand by FE: {problem}")
             say(notes[-1])
@@ -129,10 +131,11 @@ def _standing(
             spec = replace(spec, max_pressure_bar=BAR_PER_MPA * _AGAIN * problem.reached)
             if problem.reached <= choice.limits.pressure[0]:
                 break
-    return posed, choice, tuple(notes)
+    return posed, choice, tuple(notes), ""
 
 
-def _model(request: Request, formula: Formula) -> Model:
+def model_of(request: Request, formula: Formula) -> Model:
+    """Model that joints are chosen by: the joint response, or the formula that the user gave."""
     spec = request.tube
     if request.formula is not None:
         return FormulaModel(formula, spec.radius_mm)
@@ -181,18 +184,24 @@ def _step_sizes(request: Request) -> StepSizes:
     )
 
 
-def _corrected(
+def start_of(choice: Choice) -> tuple[PosedChain, Limits]:
+    """Give what the correction of a choice starts from, and its bounds."""
+    return PosedChain(choice.chain, choice.pressure, choice.pose), choice.limits
+
+
+def corrected(
     request: Request,
     forward: ForwardModel[S],
     profile: Profile,
     model: Model,
-    choice: Choice,
+    start: tuple[PosedChain, Limits],
     say: Callable[[str], None],
 ) -> PosedChain:
-    """Correct a choice by a forward model, in numbers that can be built."""
-    parameters = parameters_of(choice.chain, profile, choice.limits)
-    vector = parameters.pack(PosedChain(choice.chain, choice.pressure, choice.pose))
-    corrected = correct(
+    """Correct an actuator by a forward model, in numbers that can be built."""
+    posed, limits = start
+    parameters = parameters_of(posed.chain, profile, limits)
+    vector = parameters.pack(posed)
+    found = correct(
         forward,
         model,
         parameters,
@@ -202,7 +211,7 @@ def _corrected(
         _aim(request, model),
         say,
     )
-    return corrected.best.posed
+    return found.best.posed
 
 
 def _layout(
@@ -247,7 +256,7 @@ def angles(shape: Shape, chain: Chain) -> FloatArray:
     return np.asarray(turns, dtype=float)
 
 
-def _places(shape: Shape, chain: Chain, profile: Profile) -> FloatArray:
+def places_of(shape: Shape, chain: Chain, profile: Profile) -> FloatArray:
     """Arc length of the profile's points nearest to the joints on the bent tube: (n,) mm."""
     at = points_at(chain.centre, shape.along, shape.facing)
     away = np.hypot(*np.moveaxis(profile.points[:, None] - at, -1, 0))

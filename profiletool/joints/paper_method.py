@@ -12,7 +12,7 @@ from profiletool.bending.kinematics import deform
 from profiletool.errors import Infeasible, NoObject, UsageError
 from profiletool.joints.paper.assign import joint_rules, lay_out, theta_table
 from profiletool.joints.paper.sectors import discretise
-from profiletool.joints.plan import Plan
+from profiletool.joints.plan import Plan, out_of_reach
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request
 
@@ -67,4 +67,5 @@ def paper_plan(
         places=np.array([sector.centre for sector in sectors]),
         sectors=sectors,
         rules=rules,
+        hopeless=out_of_reach(profile.length_mm, 0.0, request),
     )

@@ -3,7 +3,7 @@
 Conventions
 -----------
 Angles on the tube count counter-clockwise as seen from the closed end, looking to the clamped
-end; 270 deg faces the object. The sheet lies face up, x along the tube from the clamped end, y
+end; 270 deg faces the object. The sheet lies face up, x along the tube from the clamp's edge, y
 up from the start edge, which lies on the seam.
 
 A sheet of gauze is rolled: the tube is laid *on* the face with its seam line on the start edge

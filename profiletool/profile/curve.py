@@ -91,14 +91,14 @@ def make_curve(points: FloatArray, step: float, half_width: float) -> Curve:
     even = resample(points, step)
     spacing = arc_length(even)[-1] / (len(even) - 1)
     reach = min(max(round(half_width / spacing), 2), (len(even) - 1) // 2)
-    fitted, direction = _local_fits(even, spacing, reach)
+    fitted, direction = local_fits(even, spacing, reach)
     s = arc_length(fitted)
     heading = np.unwrap(np.arctan2(direction[:, 1], direction[:, 0]))
     return Curve(fitted, s, heading, np.gradient(heading, s))
 
 
-def _local_fits(points: FloatArray, spacing: float, reach: int) -> tuple[FloatArray, FloatArray]:
-    """Positions and directions, (N, 2) each, by least squares over 2 reach + 1 points.
+def local_fits(points: FloatArray, spacing: float, reach: int) -> tuple[FloatArray, FloatArray]:
+    """Give positions and directions, (N, 2) each, by least squares over 2 reach + 1 points.
 
     What scipy.signal.savgol_filter does with mode="interp"; its import alone takes a second.
     """

@@ -17,7 +17,7 @@ from profiletool.records.side import Side, side_sign
 from profiletool.records.units import FloatArray
 
 STEP_MM = 0.1  # spacing of a profile's points
-_LEAST_WINDOW = 0.2  # of the tube's radius: what is shorter is nothing to a tube
+LEAST_WINDOW = 0.2  # of the tube's radius: what is shorter is nothing to a tube
 _UNDERCUT = np.sin(np.radians(20.0))  # normals steeper down than this face the base
 _STRAIGHT_DOWN = np.cos(np.radians(45.0))
 _MOST_LOST = 0.8  # of a drawn line: what is left when more is bridged is another curve
@@ -94,7 +94,7 @@ def profile_of_line(points: FloatArray, reach: Reach) -> Profile:
 def _window(reach: Reach) -> float:
     """Half-width over which headings are taken, mm."""
     width = smoothing_width(reach.noise_mm, reach.spacing_mm)
-    return min(max(width, _LEAST_WINDOW * reach.radius_mm), reach.radius_mm)
+    return min(max(width, LEAST_WINDOW * reach.radius_mm), reach.radius_mm)
 
 
 def _profile(stretch: Stretch, reach: Reach, outline: FloatArray | None) -> Profile:

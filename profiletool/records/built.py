@@ -117,6 +117,11 @@ class BuiltMisfit:
     in_contact: float | None = None
 
 
+def mm_text(value: float | None, decimals: int = 2) -> str:
+    """Write a misfit in mm, or a dash where it is not computed."""
+    return "–" if value is None else f"{value:.{decimals}f}"
+
+
 @dataclass(frozen=True)
 class BuiltPart:
     """The share of one error in the misfit of the built actuator, mm RMS: one sigma of it.

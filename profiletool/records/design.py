@@ -10,6 +10,7 @@ from itertools import pairwise
 from formula.rubber import RubberLaw
 from profiletool.errors import UnreadableInput
 from profiletool.records.built import Built, BuiltMisfit, SectorThreads, TrimPoint
+from profiletool.records.clamp import Clamp
 from profiletool.records.frames import Pose
 from profiletool.records.model import ModelInputs
 from profiletool.records.side import Side
@@ -70,7 +71,7 @@ class Joint:
     Attributes
     ----------
     number : int
-        From 1, from the clamped end on.
+        From 1, from the clamp on.
     F_mm : float
         From this joint's centre to the next one's, the last one's to the tube's end.
     openF_mm : float
@@ -82,7 +83,7 @@ class Joint:
     theta_fe_deg, theta_response_deg : float or None
         The same by finite elements and by the joint response; None where neither was asked.
     centre_mm : float
-        Place of the cut's middle along the tube, from the clamped end.
+        Place of the cut's middle along the tube, from the clamp's edge.
     stretch_fe : float or None
         Stretch of the rubber at the joint, by finite elements; see `fem.measure.stretches`.
     """
@@ -149,7 +150,7 @@ class Source:
 
 @dataclass(frozen=True)
 class Tube:
-    """The tube; ``length_mm`` from the clamped end to the closed one, no rubber is the paper's."""
+    """The tube; ``length_mm`` from the clamp's edge to the closed end, no rubber is the paper's."""
 
     outer_diameter_mm: float
     wall_mm: float
@@ -220,12 +221,12 @@ class Design:
         Operating pressure, one for the whole tube.
     joints : tuple of Joint
     base_pose : Pose
-        Of the object-facing line at the clamped end.
+        Of the object-facing line at the clamp's edge.
     fit : Fit
         Distances off the profile.
     feasible, verified : bool
-        Whether it is within the limits; whether finite elements bent these very numbers up to
-        their pressure and a little further, clear of itself.
+        Whether it is within the limits; whether finite elements bent it up to its pressure and a
+        little further, clear of itself. What was changed since is not `proven`.
     warnings : tuple of str
         What its user should know.
     method : {"optimal", "paper"}
@@ -246,6 +247,10 @@ class Design:
     threads_off_mm : BuiltMisfit or None
         How far these single threads move the object-facing line from that of the smeared gauze,
         mm RMS; None where it is not computed.
+    clamp : Clamp
+        How much of tube and gauze is held behind x = 0.
+    seal : str or None
+        Digest of all that finite elements verified; see `profiletool.records.seal`.
     """
 
     source: Source
@@ -267,6 +272,8 @@ class Design:
     model: ModelInputs = field(default_factory=ModelInputs)
     threads: tuple[SectorThreads, ...] = ()
     threads_off_mm: BuiltMisfit | None = None
+    clamp: Clamp = field(default_factory=Clamp)
+    seal: str | None = None
 
     @property
     def thread_rad(self) -> float:

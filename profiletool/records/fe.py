@@ -91,6 +91,8 @@ class Verification:
         What ends the path beyond the pressure asked for, as far as the run looked.
     theta_uncertain : tuple of int
         Numbers of the joints that are too near to each other for an angle each.
+    breaks : float or None
+        Stretch at which the rubber breaks; None where nothing tells.
     """
 
     rest: FeState
@@ -105,6 +107,7 @@ class Verification:
     failure: str | None = None
     ahead: CriticalPoint | None = None
     theta_uncertain: tuple[int, ...] = ()
+    breaks: float | None = None
 
     @property
     def converged(self) -> bool:

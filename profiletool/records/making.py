@@ -9,13 +9,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from profiletool.errors import UsageError
-from profiletool.records.built import build_errors
+from profiletool.records.built import BuildErrors, build_errors
 from profiletool.records.model import ModelInputs, check_model
 from profiletool.records.options import DESIGN, MODEL, Option
 from profiletool.records.request import Look, Request, ScaleRequest, TubeSpec
 
 if TYPE_CHECKING:
     from formula.theta import Formula
+    from profiletool.records.design import Design
+    from profiletool.records.profile import Profile
 
 
 def request_of(file: Path, values: Mapping[str, Any], formula: Formula | None = None) -> Request:
@@ -57,6 +59,36 @@ def request_of(file: Path, values: Mapping[str, Any], formula: Formula | None = 
         else:
             own[field] = build_errors(value) if field == "build" else value
     return Request(file, **parts, **own)
+
+
+def request_again(design: Design, profile: Profile, refine: bool) -> Request:
+    """Ask for a design anew: its own tube, model and errors of the build, along its profile.
+
+    Its numbers stay as they are, whatever steps they lie on, unless they are to be corrected.
+    """
+    tube, gauze, most = design.tube, design.gauze, TubeSpec()
+    spec = TubeSpec(
+        outer_diameter_mm=tube.outer_diameter_mm,
+        wall_mm=tube.wall_mm,
+        root_mm=min(tube.root_mm, most.root_mm) if refine else tube.root_mm,
+        pitch_mm=gauze.pitch_mm,
+        thread_mm=gauze.thread_mm,
+        turns=gauze.turns,
+        max_pressure_bar=max(design.pressure_bar, most.max_pressure_bar),
+        max_length_mm=max(tube.length_mm, most.max_length_mm),
+        rubber=tube.rubber,
+        clamp_mm=design.clamp.length_mm,
+    )
+    asked = Request(
+        Path(design.source.file),
+        side=design.source.side,
+        tube=spec,
+        build=BuildErrors() if design.built is None else design.built.build,
+        model=design.model,
+        given=profile,
+        refine=refine,
+    )
+    return asked if refine else replace(asked, alpha_step_deg=0.0, place_step_mm=0.0)
 
 
 def check_request(request: Request) -> None:

@@ -13,6 +13,7 @@ from pathlib import Path, PurePath
 from typing import Any
 
 from profiletool.records.built import BuildErrors
+from profiletool.records.clamp import LEAST_MM
 from profiletool.records.request import Request
 
 
@@ -110,9 +111,18 @@ class Option:
 
 
 DESIGN = (
-    Option("--height", "scale.height_mm", _MM, "Full height of the object, mm.", above=0.0),
-    Option("--width", "scale.width_mm", _MM, "Full width of the object, mm.", above=0.0),
-    Option("--mm-per-px", "scale.mm_per_px", _RATIO, "Millimetres per pixel.", above=0.0),
+    Option(
+        "--height", "scale.height_mm", _MM, "Full height of the object, drawn or pictured, mm.",
+        above=0.0,
+    ),
+    Option(
+        "--width", "scale.width_mm", _MM, "Full width of the object, drawn or pictured, mm.",
+        above=0.0,
+    ),
+    Option(
+        "--mm-per-px", "scale.mm_per_px", _RATIO,
+        "Millimetres per pixel, or per unit of a drawing.", above=0.0,
+    ),
     Option(
         "--marker-mm", "scale.marker_mm", _MM,
         "Side of an ArUco DICT_4X4_50 marker in the picture, mm.", above=0.0,
@@ -132,6 +142,14 @@ DESIGN = (
         "Turn the object, deg counter-clockwise; auto: its axis upright.", metavar="auto|DEG",
     ),
     Option("--symmetric", "look.symmetric", _YES, "Take the mean of the object's two sides."),
+    Option(
+        "--flat", "look.flat", _YES,
+        "The object is flat and lies on the marker's or printed sheet's plane.",
+    ),
+    Option(
+        "--layer", "look.layer", ValueKind(str, str),
+        "Read this layer of a DXF alone, or this group of an SVG.",
+    ),
     Option("--side", "side", _choice("left", "right"), "Side of the object to follow.", main=True),
     Option(
         "--from", "start_pct", _PERCENT, "Start of the stretch, % of that side from the top.",
@@ -149,7 +167,12 @@ DESIGN = (
     ),
     Option(
         "--root", "tube.root_mm", _ROOT,
-        "Least clamped length before the first joint's centre, mm.", above=0.0,
+        "Least length from the clamp's edge to the first joint's centre, mm.", above=0.0,
+    ),
+    Option(
+        "--clamp", "tube.clamp_mm", _MM,
+        "Tube and gauze that are held behind the clamp's edge, mm (default: one diameter).",
+        least=LEAST_MM, absent="one diameter",
     ),
     Option(
         "--pitch", "tube.pitch_mm", _MM, "Mesh pitch of the gauze, mm.", above=0.0, main=True
@@ -160,8 +183,10 @@ DESIGN = (
     ),
     Option("--max-length", "tube.max_length_mm", _MM, "Longest tube, mm.", above=0.0, main=True),
     Option(
-        "--formula", "formula", _FILE, "A formula file, or by name paper (default) or fe.",
-        absent="paper",
+        "--formula", "formula", _FILE,
+        "A formula file, or by name paper or fe (default: fe, ours for the paper's tube, with "
+        "--method optimal; paper with --method paper).",
+        absent="the method's",
     ),
     Option(
         "--extrapolate", "extrapolate", _YES,
@@ -244,7 +269,7 @@ _OTHERS = {
     "alpha_center_deg": "--alpha-center", "base": "--from", "runs": "--runs",
     "scheduler": "--scheduler", "workers": "--workers", "alpha_deg": "--alpha",
     "openF_mm": "--openF", "theta_deg": "--theta", "tip_mm": "--tip", "at_bar": "--at",
-    "angles": "--angles",
+    "angles": "--angles", "joint": "--joint", "move_mm": "--move",
 }  # fmt: skip
 FLAGS: Mapping[str, str] = {**{row.field: row.flag for row in DESIGN}, **_OTHERS}
 

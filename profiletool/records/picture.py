@@ -26,6 +26,8 @@ class Picture:
         As Pillow names it: "PNG", "JPEG", ...
     focal_px : float or None
         Focal length in pixels, where the file tells its 35 mm equivalent; some per cent off.
+    notes : tuple of str
+        What the user should know of how the file was read.
     """
 
     rgb: NDArray[np.uint8]
@@ -33,6 +35,7 @@ class Picture:
     mm_per_px: float | None
     format: str
     focal_px: float | None = None
+    notes: tuple[str, ...] = ()
 
     @property
     def middle(self) -> FloatArray:
@@ -83,11 +86,17 @@ class Scale:
     error_share : float or None
         By how much of itself the number may be off, about two standard deviations; None where
         nothing is known of it.
+    round_mm : float or None
+        Thickness of the round body that the object was taken for; None where that did not matter.
+    flat_share : float
+        By how much of itself a flat object is larger.
     """
 
     mm_per_px: float
     source: Literal["height", "width", "mm-per-px", "marker", "sheet", "resolution", "vector"]
     error_share: float | None = None
+    round_mm: float | None = None
+    flat_share: float = 0.0
 
     @property
     def measured_error(self) -> float | None:

@@ -51,16 +51,43 @@ class Profile:
 
 
 @dataclass(frozen=True)
+class DrawnUnit:
+    """The unit of a drawing's numbers.
+
+    Attributes
+    ----------
+    mm : float
+        Length of one.
+    source : str
+        Clause that says where it is from; "" for mm that nobody doubts.
+    sized : bool
+        Whether the drawing has a size at all; else ``mm`` is but a number to draw with.
+    assumed : bool
+        Whether it is taken by habit, and to be told.
+    """
+
+    mm: float = 1.0
+    source: str = ""
+    sized: bool = True
+    assumed: bool = False
+
+
+@dataclass(frozen=True)
 class DrawnLine:
     """A drawn profile.
 
     Attributes
     ----------
-    points : (N, 2) mm, x to the right, y up
+    points : (N, 2) mm by its unit, x to the right, y up
         In the drawing's own place and order of travel, no two successive ones alike, 3 at least.
     closed : bool
         The last point joins the first, which is not repeated.
+    unit : DrawnUnit
+    notes : tuple of str
+        What the user should know of how the drawing was read.
     """
 
     points: FloatArray
     closed: bool
+    unit: DrawnUnit = DrawnUnit()
+    notes: tuple[str, ...] = ()

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from profiletool.records.built import BuildErrors
+from profiletool.records.clamp import LEAST_MM, Clamp
 from profiletool.records.model import ModelInputs
 from profiletool.records.side import Side
 
@@ -54,7 +55,7 @@ class TubeSpec:
     ----------
     outer_diameter_mm, wall_mm : float
     root_mm : float
-        Least clamped length before the first joint's centre.
+        Least length from the clamp's edge to the first joint's centre.
     pitch_mm, thread_mm : float
         Of the gauze: mesh pitch, diameter of a thread.
     turns : int
@@ -63,6 +64,8 @@ class TubeSpec:
         Highest pressure; longest tube.
     rubber : RubberLaw or None
         None for the paper's silicone.
+    clamp_mm : float or None
+        Length of tube and gauze that is held behind the clamp's edge; None for one diameter.
     """
 
     outer_diameter_mm: float = 20.0
@@ -74,6 +77,14 @@ class TubeSpec:
     max_pressure_bar: float = 2.0
     max_length_mm: float = 250.0
     rubber: RubberLaw | None = None
+    clamp_mm: float | None = None
+
+    @property
+    def clamp(self) -> Clamp:
+        """The clamp that the tube is held by."""
+        return Clamp(
+            max(self.outer_diameter_mm, LEAST_MM) if self.clamp_mm is None else self.clamp_mm
+        )
 
     @property
     def radius_mm(self) -> float:
@@ -102,6 +113,10 @@ class Look:
         Degrees counter-clockwise to turn the object by.
     symmetric : bool
         Whether to take the mean of the object's two sides.
+    flat : bool
+        Whether the object is flat and lies on the marker's or printed sheet's plane.
+    layer : str or None
+        Of a drawing, to read alone.
     """
 
     box: Box | None = None
@@ -109,6 +124,8 @@ class Look:
     mask: Path | None = None
     rotate: float | Literal["auto"] = 0.0
     symmetric: bool = False
+    flat: bool = False
+    layer: str | None = None
 
 
 Method = Literal["optimal", "paper"]

@@ -5,6 +5,13 @@ from __future__ import annotations
 from fem.material import PAPER_RUBBER, Law, law
 from formula.rubber import RubberLaw
 
+# Stretch at break, by the data sheets: the paper's XIAMETER RTV-4250-S 850 % of strain, Smooth-On's
+# Dragon Skins 1000, 620 and 364 %, Wacker's Elastosil M 4601 700 %.
+BREAKS = {
+    "paper": 9.5, "dragon-skin-10": 11.0, "dragon-skin-20": 7.2, "dragon-skin-30": 4.6,
+    "elastosil-m4601": 8.0,
+}  # fmt: skip
+PAPER_BREAKS = BREAKS["paper"]
 _SHEAR_MPA = 2e-4, 2e3  # from gels to hard plastics
 _MOST_BULK_MPA = 1e6
 
@@ -40,6 +47,16 @@ def law_of(rubber: RubberLaw | None, nu: float | None = None) -> Law:
             f"a bulk modulus of {made.bulk_modulus:.3g} MPa: no rubber can have such constants"
         )
     return made
+
+
+def usual_rubber(rubber: RubberLaw | None) -> bool:
+    """Whether a rubber is the paper's silicone."""
+    return rubber is None or rubber.name == "paper"
+
+
+def breaking_stretch(rubber: RubberLaw | None) -> float | None:
+    """Stretch at which a rubber breaks; None where nothing tells, and None's is the paper's."""
+    return PAPER_BREAKS if rubber is None else BREAKS.get(rubber.name)
 
 
 def constants_text(rubber: RubberLaw) -> str:

@@ -10,6 +10,7 @@ from profiletool.pipeline import Result
 from profiletool.records.design import Design
 from profiletool.records.fe import Verification
 from profiletool.records.frames import Shape
+from profiletool.records.seal import proven
 from profiletool.report.asked import options_of
 from profiletool.report.plots import Mark
 from profiletool.report.scene import Scene
@@ -61,8 +62,11 @@ class Dossier:
     @property
     def unverified(self) -> str | None:
         """Why the design is not verified; None where it is."""
-        if self.scene.design.verified:
+        design = self.scene.design
+        if proven(design):
             return None
+        if design.verified:
+            return "it was changed since finite elements verified it"
         if self.check is None or self.check.failure is None:
             return "no finite-element run has checked this design"
         return f"finite elements: {self.check.failure}"

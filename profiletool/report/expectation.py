@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from profiletool.records.built import Built
+from profiletool.records.built import Built, mm_text
 from profiletool.records.design import Design
 from profiletool.report.markup import Markup, joined, table, tag
 
@@ -33,7 +33,7 @@ def expectation(design: Design) -> Markup:
 
 def _figures(built: Built) -> Markup:
     rows = [
-        (what, _mm(misfit.as_set), _mm(misfit.trimmed))
+        (what, mm_text(misfit.as_set), mm_text(misfit.trimmed))
         for what, misfit in (
             ("expected (root of the mean square)", built.expected_rms_mm),
             ("95 % of builds lie within", built.p95_rms_mm),
@@ -61,10 +61,6 @@ def _threads(design: Design) -> Markup:
     return tag(
         "p",
         "Finite elements smear the axial threads over the gauze. With the single threads that the "
-        f"template's sheet leaves whole the tube lies {_mm(off.as_set)} mm RMS beside that, "
-        f"{_mm(off.trimmed)} mm once the pressure is set.",
+        f"template's sheet leaves whole the tube lies {mm_text(off.as_set)} mm RMS beside that, "
+        f"{mm_text(off.trimmed)} mm once the pressure is set.",
     )
-
-
-def _mm(value: float | None) -> str:
-    return "–" if value is None else f"{value:.2f}"

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
+from formula.theta import Formula, theta_deg
+from profiletool.joints.misfit import misfit_to
 from profiletool.records.design import Design, Misfit
 from profiletool.records.fe import Verification
+from profiletool.records.units import FloatArray
 from profiletool.verify.cautions import cautions
 
 _ANGLE_DECIMALS = 4  # deg: the mesh is good to a hundredth
@@ -90,6 +93,11 @@ def _head(joint: int, found: Verification) -> str:
     return f"{'~' if joint in found.theta_uncertain else ''}theta{joint}"
 
 
+def off_target(found: Verification, target: FloatArray) -> Misfit:
+    """Say how far the last state lies off a target's points, (N, 2) mm."""
+    return misfit_to(found.last.shape, target)
+
+
 def compared_text(
     design: Design, found: Verification, off: Misfit | None, target: str | None
 ) -> str:
@@ -161,3 +169,28 @@ def _reached(found: Verification) -> list[float | None]:
 
 def _short(value: float) -> float:
     return float(f"{value:.{_SIGNIFICANT}g}")
+
+
+def formula_json(
+    found: Verification, formula: Formula | None, cuts: Sequence[tuple[float, float]]
+) -> dict[str, Any]:
+    """Make the entry of fe.json for a formula's angles, of cuts (openF mm, alpha deg) in order."""
+    if formula is None:
+        return {}
+    theta = [
+        [round(float(theta_deg(formula, alpha, openF, bar)), _ANGLE_DECIMALS)
+         for bar in found.pressures_bar]
+        for openF, alpha in cuts
+    ]  # fmt: skip
+    return {"formula": {"name": formula.name, "theta_deg": theta}}
+
+
+def formula_text(
+    found: Verification, formula: Formula | None, cuts: Sequence[tuple[float, float]]
+) -> str:
+    """Say what a formula makes of the last state."""
+    if formula is None:
+        return ""
+    bar = found.last.pressure_bar
+    said = (f"{float(theta_deg(formula, alpha, openF, bar)):.1f}" for openF, alpha in cuts)
+    return f'by the formula "{formula.name}" at {bar:.2f} bar: {", ".join(said)} deg\n'

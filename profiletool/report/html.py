@@ -12,6 +12,7 @@ from pathlib import PurePath
 from matplotlib.figure import Figure
 
 from profiletool.records.fe import Verification
+from profiletool.records.seal import proven
 from profiletool.report.dossier import Dossier
 from profiletool.report.error import error_figure
 from profiletool.report.expectation import expectation
@@ -137,7 +138,7 @@ def _verdict(dossier: Dossier) -> Markup:
         lines.append(tag("p", said if design.feasible else f"By finite elements (FE) {said}."))
         if design.built is not None:
             lines.append(tag("p", f"Built by hand: {built_text(design.built)}."))
-    good = design.feasible and design.verified
+    good = design.feasible and proven(design)
     return tag("div", *lines, class_=f"verdict {'good' if good else 'bad'}", id="verdict")
 
 
@@ -237,7 +238,7 @@ def _build(dossier: Dossier) -> Markup:
     design = dossier.scene.design
     told = (tag("li", tag("h3", step.title), step.body) for step in steps(design, dossier.found))
     listed = tag("ol", *told, class_="steps")
-    if design.feasible and design.verified:
+    if design.feasible and proven(design):
         return listed
     lacking = "NOT VERIFIED" if design.feasible else "INFEASIBLE"
     said = f"This design is {lacking}: build it to try it, not to rely on it."

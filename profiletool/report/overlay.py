@@ -12,12 +12,13 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from matplotlib.patheffects import withStroke
 
+from profiletool.profile.curve import points_at
 from profiletool.profile.offset import offset_curve, offset_points
 from profiletool.records.frames import Shape
 from profiletool.records.units import FloatArray
 from profiletool.report.overlay_panel import best_theta_deg, draw_panel
 from profiletool.report.palette import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, RED, SKY, YELLOW
-from profiletool.report.scene import Scene
+from profiletool.report.scene import Scene, clamp_ring
 
 _DPI = 130
 _MARGIN_MM = 12.0
@@ -60,7 +61,7 @@ def draw_overlay(scene: Scene) -> bytes:
 def _limits(scene: Scene) -> tuple[float, float, float, float]:
     parts = [
         scene.bent.facing, scene.bent.far, scene.straight.facing, scene.straight.far,
-        scene.profile.points,
+        scene.profile.points, clamp_ring(scene),
     ]  # fmt: skip
     if scene.fe is not None:
         parts += [scene.fe.facing, scene.fe.far]
@@ -137,11 +138,12 @@ def _draw_bent(axes: Any, scene: Scene, bent: Shape, colour: str, label: str) ->
     for bend in scene.bends:
         within = np.abs(bent.along - bend.centre_mm) <= 0.5 * bend.openF_mm + 1e-9
         window = np.concatenate([bent.facing[within], bent.far[within][::-1]])
-        _fill(axes, window, facecolor=colour, alpha=0.30, lw=0, zorder=4)
-    root = scene.design.tube.root_mm - 0.5 * scene.design.joints[0].openF_mm
-    clamped = bent.along <= root + 1e-9
-    clamp = np.concatenate([bent.facing[clamped], bent.far[clamped][::-1]])
-    _fill(axes, clamp, facecolor="none", edgecolor=INK, hatch="////", lw=0.0, alpha=0.45, zorder=5)
+        named = "cuts, with their angles" if bend is scene.bends[0] else None
+        _fill(axes, window, facecolor=colour, alpha=0.30, lw=0, zorder=4, label=named)
+    _fill(
+        axes, clamp_ring(scene), facecolor="none", edgecolor=INK, hatch="////", lw=0.8, alpha=0.45,
+        zorder=5, label="clamp",
+    )  # fmt: skip
 
 
 def _ring(shape: Shape) -> FloatArray:
@@ -174,21 +176,24 @@ def _draw_profile(axes: Any, scene: Scene) -> None:
 
 
 def _draw_joints(axes: Any, scene: Scene) -> None:
+    """Write every joint's number beside it, and its angle onto its cut."""
     profile, diameter = scene.profile, scene.design.tube.outer_diameter_mm
     badges = [offset_points(profile, diameter * k) for k in (1.3, 1.65, 0.5, 0.8, 2.0)]
-    angles = [offset_points(profile, -diameter * k) for k in (0.35, 0.7, 1.05, 1.4)]
-    taken: list[FloatArray] = []
-    for place, joint in zip(scene.places, scene.design.joints, strict=True):
+    bent = scene.bent if scene.fe is None else scene.fe
+    middles = points_at(
+        np.array([joint.centre_mm for joint in scene.design.joints]), bent.along, bent.axis
+    )
+    taken: list[FloatArray] = list(middles)
+    for place, middle, joint in zip(scene.places, middles, scene.design.joints, strict=True):
+        axes.text(
+            *middle, f"{joint.signed(best_theta_deg(joint)):.0f}°", color=INK, fontsize=10.5,
+            weight="bold", ha="center", va="center", zorder=9, path_effects=_halo(3.0),
+        )  # fmt: skip
         at = min(int(np.searchsorted(profile.s, place)), len(profile.s) - 1)
         axes.text(
             *_free_place([curve[at] for curve in badges], taken), str(joint.number),
             color="white", fontsize=11, weight="bold", ha="center", va="center", zorder=9,
             bbox={"boxstyle": "circle,pad=0.28", "fc": RED, "ec": "white", "lw": 1.2},
-        )  # fmt: skip
-        axes.text(
-            *_free_place([curve[at] for curve in angles], taken),
-            f"{joint.signed(best_theta_deg(joint)):.0f}°", color=INK, fontsize=10.5,
-            weight="bold", ha="center", va="center", zorder=9, path_effects=_halo(3.0),
         )  # fmt: skip
 
 

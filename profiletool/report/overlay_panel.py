@@ -5,7 +5,9 @@ from __future__ import annotations
 import textwrap
 from typing import Any
 
+from profiletool.records.built import mm_text
 from profiletool.records.design import Design, Joint
+from profiletool.records.seal import proven
 from profiletool.report.palette import GREY, INK, RED
 from profiletool.report.scene import Scene
 from profiletool.report.text import scale_text
@@ -35,13 +37,14 @@ def _status(design: Design) -> list[tuple[str, str]]:
     if not design.feasible:
         lines.append(("INFEASIBLE: best attempt", RED))
     off = design.fit.fe
-    if not design.verified:
+    if not proven(design):
         lines.append(("NOT VERIFIED by FE", RED))
     elif off is not None:
         lines.append((f"verified by FE: {off.rms_mm:.2f} mm RMS with perfect parts", INK))
         if design.built is not None:
             expected = design.built.expected_rms_mm
-            said = f"built: {expected.as_set:.1f} mm as set, {expected.trimmed:.1f} mm pressure set"
+            as_set, trimmed = (mm_text(mm, 1) for mm in (expected.as_set, expected.trimmed))
+            said = f"built: {as_set} mm as set, {trimmed} mm pressure set"
             lines.append((said, INK))
     return lines
 
@@ -49,11 +52,10 @@ def _status(design: Design) -> list[tuple[str, str]]:
 def _facts(design: Design) -> list[str]:
     tube, source, fit = design.tube, design.source, design.fit
     scale = "" if source.mm_per_px is None else f"  ({scale_text(source)})"
-    off = [("formula off the profile", fit.formula)]
+    off = [] if fit.fe is None else [("FE off the profile", fit.fe)]
     if fit.response is not None:
         off.append(("joint response off the profile", fit.response))
-    if fit.fe is not None:
-        off.append(("FE off the profile", fit.fe))
+    off.append(("formula off the profile", fit.formula))
     return [
         f"operating pressure {design.pressure_bar:.2f} bar",
         f"tube {tube.outer_diameter_mm:g} x {tube.wall_mm:g} mm, {tube.length_mm:.1f} mm long, "
@@ -67,7 +69,7 @@ def _facts(design: Design) -> list[str]:
 def _draw_table(axes: Any, design: Design, y: float) -> float:
     columns: tuple[float, ...] = (0.06, 0.22, 0.40, 0.58, 0.75, 0.92)
     heads: tuple[str, ...] = ("joint", "F\nmm", "openF\nmm", "α closed\n°", "α center\n°", "θ\n°")
-    if design.verified:
+    if proven(design):
         columns = (0.06, 0.18, 0.32, 0.47, 0.62, 0.79, 0.93)
         heads = (*heads[:5], "θ formula\n°", "θ FE\n°")
     for x, head in zip(columns, heads, strict=True):
@@ -80,8 +82,8 @@ def _draw_table(axes: Any, design: Design, y: float) -> float:
         cells = (
             f"{joint.number}", f"{joint.F_mm:.1f}", f"{joint.openF_mm:g}",
             f"{joint.alpha_closed_deg:.4g}", f"{joint.alpha_center_deg:g}",
-            *((f"{joint.theta_formula_deg:.1f}",) if design.verified else ()),
-            f"{best_theta_deg(joint):.1f}",
+            *((f"{joint.signed(joint.theta_formula_deg):.1f}",) if proven(design) else ()),
+            f"{joint.signed(best_theta_deg(joint)):.1f}",
         )  # fmt: skip
         for x, cell in zip(columns, cells, strict=True):
             axes.text(x, y, cell, fontsize=10, color=INK, ha="center", va="center")

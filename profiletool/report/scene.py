@@ -98,6 +98,14 @@ def scene_of(result: Result) -> Scene:
     )
 
 
+def clamp_ring(scene: Scene) -> FloatArray:
+    """Outline of the tube in its clamp, (4, 2) mm: the clamp's edge first and last."""
+    near, far = scene.straight.facing[0], scene.straight.far[0]
+    along = scene.straight.facing[-1] - near
+    back = scene.design.clamp.length_mm * along / np.hypot(*along)
+    return np.stack([near, near - back, far - back, far])
+
+
 def backdrop_of(
     picture: Picture, mm_per_px: float, origin_px: tuple[float, float], rotated_deg: float = 0.0
 ) -> Backdrop:

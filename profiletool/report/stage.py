@@ -15,13 +15,12 @@ from profiletool.records.frames import Shape
 from profiletool.records.units import FloatArray
 from profiletool.report.film import Film, drawn, path, ring_path
 from profiletool.report.markup import Markup, signed, table, tag
-from profiletool.report.scene import Backdrop, Scene
+from profiletool.report.scene import Backdrop, Scene, clamp_ring
 
 _MARGIN_MM = 7.0
 _LONGEST_PX = 1000
 _JPEG_QUALITY = 80
 _FINE_MM = 0.02  # drawn lines are thinned by no more
-_CLAMP_MM = (4.0, 2.0)  # depth, and how far it stands out at either side
 _EMS = 46.0  # widths of a letter across the stage
 _SUBSTEPS = 24  # of the slider, between two pressures of FE
 
@@ -64,7 +63,7 @@ def stage(scene: Scene, film: Film, *, by_fe: bool) -> Markup:
         *_tube(film, _colour(scene, by_fe)),
         *([_line(f"bent {_colour(scene, False)}", _ring(scene.bent))] if by_fe else []),
         *([] if scene.band is None else [_line("band", ring_path(*map(drawn, scene.band)))]),
-        *_clamp(scene.straight, frame),
+        *_clamp(clamp_ring(scene)),
         *_profile(scene),
         *_numbers(scene, film, frame),
         *_scale_bar(frame),
@@ -96,6 +95,7 @@ def legend(scene: Scene, film: Film, *, by_fe: bool) -> Markup:
         rows.append((f"bent {_colour(scene, False)}", told))
     if scene.band is not None:
         rows.append(("band", "95 % of builds, pressure set on each"))
+    rows.append((f"window {_colour(scene, by_fe)}", "cuts, with the joints' numbers"))
     rows.append(("rest", "tube at rest"))
     rows.append(("clamped", "clamp"))
     items = (tag("li", _key(class_), said) for class_, said in rows)
@@ -144,6 +144,7 @@ def frame_of(scene: Scene, film: Film) -> StageFrame:
     parts = [
         film.lines.reshape(-1, 2) * [0.01, -0.01],
         scene.profile.points,
+        clamp_ring(scene),
         *(line for shape in (scene.bent, scene.straight) for line in (shape.facing, shape.far)),
     ]
     if scene.profile.outline is not None:
@@ -205,17 +206,10 @@ def _tube(film: Film, colour: str) -> Iterator[Markup]:
         yield tag("path", class_=f"window {colour}", d=film.window(k), data_window=str(k))
 
 
-def _clamp(straight: Shape, frame: StageFrame) -> Iterator[Markup]:
-    """Draw the clamp behind the tube's clamped end, as drawings show what is fixed."""
-    near, far = straight.facing[0], straight.far[0]
-    out = (far - near) / np.hypot(*(far - near))
-    back = -(straight.facing[1] - straight.facing[0])
-    back /= np.hypot(*back)
-    depth, more = _CLAMP_MM
-    a, b = near - more * out, far + more * out
-    ring = np.stack([a, b, b + depth * back, a + depth * back])
+def _clamp(ring: FloatArray) -> Iterator[Markup]:
+    """Draw the tube in its clamp (4, 2) mm, as drawings show what is fixed, and the edge x = 0."""
     yield tag("path", d=path(drawn(ring)) + "Z", fill="url(#hatch)", class_="hatched")
-    yield _line("clamped", path(drawn(np.stack([a, b]))))
+    yield _line("clamped", path(drawn(ring[[0, 3]])))
 
 
 def _hatch(frame: StageFrame) -> Markup:
@@ -270,7 +264,8 @@ def _scale_bar(frame: StageFrame) -> Iterator[Markup]:
 
 def _key(class_: str) -> Markup:
     """Draw a piece of a line, or of the clamp, as it is drawn on the stage."""
-    parts = [_line(class_, "M1,6H27")]
+    drawn = "M2,1H26V11H2Z" if class_.startswith("window") else "M1,6H27"
+    parts = [_line(class_, drawn)]
     if class_ == "clamped":
         parts.append(tag("g", _line("hatched", "M0.3,2H9V4H0.3Z"), transform="scale(3)"))
     return tag("svg", *parts, viewBox="0 0 28 12", aria_hidden="true")

@@ -16,7 +16,6 @@ from profiletool.template.labels import short, times
 from profiletool.template.unroll import sheet_size
 
 _CAP_MM = 4.0  # rubber beyond the core's end, which closes the tube (the paper's)
-_GRIP_MM = 30.0  # of tube that plug and belt take (the paper's: 33 mm)
 _STEPS = 10  # up to the full pressure, as finite elements have them
 _WAIT_S = 10  # at every pressure, before it is read (the paper's)
 _PAPER_RUBBER = (
@@ -58,11 +57,11 @@ def steps(design: Design, found: Verification | None) -> tuple[Step, ...]:
 
 
 def _tube(design: Design) -> Markup:
-    tube = design.tube
+    tube, held = design.tube, design.clamp.length_mm
     inner = tube.outer_diameter_mm - 2.0 * tube.wall_mm
     area = 0.25 * pi * (tube.outer_diameter_mm**2 - inner**2)
     cap = 0.25 * pi * tube.outer_diameter_mm**2 * _CAP_MM
-    volume_ml = 1e-3 * (area * (tube.length_mm + _GRIP_MM) + cap)
+    volume_ml = 1e-3 * (area * (tube.length_mm + design.clamp.length_mm) + cap)
     rubber = tube.rubber
     law = (
         _PAPER_RUBBER
@@ -76,25 +75,29 @@ def _tube(design: Design) -> Markup:
                     ("Outer diameter", f"{tube.outer_diameter_mm:g} mm"),
                     ("Inner diameter, the core's", f"{inner:g} mm"),
                     ("Wall", f"{tube.wall_mm:g} mm"),
-                    ("Length", f"{short(tube.length_mm)} mm from clamp to closed end"),
+                    (
+                        "Length",
+                        f"{short(tube.length_mm + held)} mm: {short(tube.length_mm)} from the "
+                        f"clamp's edge, x = 0, to the closed end, and {short(held)} in the clamp",
+                    ),
                     ("Rubber", law),
                     ("Rubber to pour", f"{volume_ml:.0f} ml, and what sticks to the cup"),
                 )
             ),
             tag(
                 "p",
-                f"Cast it some {_GRIP_MM:g} mm longer at the open end, where plug and belt grip. "
                 f"A core of {inner:g} mm stands centred in a mould of {tube.outer_diameter_mm:g} "
                 f"mm; about {_CAP_MM:g} mm of rubber over the core's end close the tube. A groove "
-                "around the core's foot makes a bead inside the tube that seals on the plug. "
-                "Shake bubbles out before it sets.",
+                "around the core's foot makes a bead inside the tube, "
+                f"{short(-design.clamp.bead_mm)} mm behind x = 0, that seals on the plug. Shake "
+                "bubbles out before it sets.",
             ),
         )
     )
 
 
 def _template(design: Design) -> Markup:
-    along, around = sheet_size(design.tube, design.gauze)
+    along, around = sheet_size(design)
     return tag(
         "p",
         "Print ",
@@ -104,20 +107,20 @@ def _template(design: Design) -> Markup:
         _file("template.dxf"),
         " or ",
         _file("template.svg"),
-        f", in millimetres. The piece is {short(along)} mm along the tube and {short(around)} mm "
-        "around it.",
+        f", in millimetres. The piece is {short(along)} mm along the tube, from its open end to "
+        f"its closed one, and {short(around)} mm around it. The line x = 0 is the clamp's edge.",
     )
 
 
 def _slits(design: Design) -> Markup:
     gauze = design.gauze
-    along, around = sheet_size(design.tube, gauze)
+    along, around = sheet_size(design)
     parts = [
         tag(
             "p",
             f"Polyamide gauze, square mesh of {gauze.pitch_mm:g} mm, thread {gauze.thread_mm:g} "
             f"mm. Cut a piece of {short(along)} × {short(around)} mm with its threads along the "
-            "edges, longer at the clamped end by what plug and belt grip; the start edge runs "
+            f"edges, {short(design.clamp.length_mm)} mm of it for the clamp; the start edge runs "
             "half-way between two axial threads. Each slit lies between "
             "two hoop threads and severs axial threads only. Take no gauze out: the hoop threads "
             "stay whole.",
@@ -168,23 +171,25 @@ def _weld(design: Design) -> Markup:
 
 
 def _plug(design: Design) -> Markup:
-    tube, first = design.tube, design.joints[0]
+    tube, first, clamp = design.tube, design.joints[0], design.clamp
+    far, near = (short(-place) for place in clamp.belt_mm)
     free = tube.root_mm - 0.5 * first.openF_mm
     inner = tube.outer_diameter_mm - 2.0 * tube.wall_mm
     return joined(
         (
             tag(
                 "p",
-                f"An aluminium plug of {inner:g} mm with a groove for the bead and a fitting for a "
-                "4 mm hose goes into the open end. A plastic belt around gauze, tube and plug "
-                "holds them.",
+                f"An aluminium plug of {inner:g} mm with a groove for the bead and a fitting for "
+                f"a 4 mm hose goes {short(clamp.length_mm)} mm into the open end: its inner face "
+                "lies at x = 0. A plastic belt or a saddle around gauze, tube and plug, "
+                f"{far} to {near} mm behind x = 0, holds them.",
             ),
             tag(
                 "p",
-                "The edge of the clamp is the clamped end of the template, x = 0; from there to "
+                "The edge of the clamp is the template's line x = 0. From there to "
                 f"the first cut the tube has {short(free)} mm of whole gauze, and its root is "
-                f"{short(tube.root_mm)} mm to the middle of joint 1. Plug and belt grip on the "
-                f"{_GRIP_MM:g} mm behind x = 0.",
+                f"{short(tube.root_mm)} mm to the middle of joint 1. Tube and gauze go on for "
+                f"{short(clamp.length_mm)} mm behind it, to the open end.",
             ),
         )
     )
@@ -204,7 +209,7 @@ def _mount(design: Design) -> Markup:
             pairs(
                 (
                     (
-                        "The object-facing line starts",
+                        "The object-facing line starts, at x = 0",
                         f"x {signed(pose.x_mm, 2)} mm, y {signed(pose.y_mm, 2)} mm from "
                         f"{origin_of(design)}, "
                         "x to the right and y up",

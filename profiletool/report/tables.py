@@ -46,7 +46,7 @@ def joint_table(design: Design, places: FloatArray) -> Markup:
     ]
     said = (
         f"Angles at {design.pressure_bar:.2f} bar, positive toward the object. Places are the "
-        "cuts' centres: along the tube from the clamped end, along the profile from its start."
+        "cuts' centres: along the tube from the clamp's edge, along the profile from its start."
     )
     return table(heads, rows, said)
 
@@ -55,7 +55,7 @@ def slit_table(design: Design) -> Markup:
     """Tabulate where the slits of every joint are, and what stays uncut."""
     pitch = design.gauze.pitch_mm
     found = slits(design.joints, design.tube, design.gauze)
-    heads = ("Joint", "x from the clamped end (mm)", "rows, per turn", "slits, all turns",
+    heads = ("Joint", "x from the clamp's edge (mm)", "rows, per turn", "slits, all turns",
              "threads left uncut, by turn", "on the side")  # fmt: skip
     rows = [
         (
@@ -150,7 +150,8 @@ def provenance(
 ) -> Markup:
     """Tabulate what the design was made from, and how; ``options`` are those asked for."""
     source, formula = design.source, design.formula
-    scale = "in mm already" if source.mm_per_px is None else scale_text(source, digits=6)
+    own = "in mm already" if source.scale_source == "vector" else "sized as given"
+    scale = own if source.mm_per_px is None else scale_text(source, digits=6)
     rows: list[tuple[str, str]] = [
         ("Input", tag("bdi", source.file)),
         ("SHA-256 of the input", tag("code", source.sha256)),

@@ -16,6 +16,7 @@ from profiletool.errors import UnreadableInput, UsageError
 from profiletool.files.columns import NUMBER
 from profiletool.files.read import read_file
 from profiletool.records.rubber import constants_text
+from profiletool.rubber.columns import first_loading
 from profiletool.rubber.uniaxial import STIFFNESSES, fit_uniaxial, read_uniaxial, uniaxial_stress
 
 PAPER_NU = 0.46
@@ -230,16 +231,21 @@ def _by_test(path: Path) -> Rubber:
     except UnreadableInput as error:
         raise UnreadableInput(f"cannot read {shown}: {error}") from None
     try:
-        fit = fit_uniaxial(*read_uniaxial(data), PAPER_NU)
+        stretch, stress = read_uniaxial(data)
+        kept = first_loading(stretch)
+        fit = fit_uniaxial(stretch[kept], stress[kept], PAPER_NU)
     except UnreadableInput as error:
         raise UnreadableInput(f"{shown}: {error}") from error
     low, high = fit.stretch_range
+    alone = (
+        "" if len(kept) == len(stretch) else f", the first loading alone of {len(stretch)} points"
+    )
     return Rubber(
         name=path.name,
         law=fit.law,
         source=(
             f"fit to {fit.points} points of {shown}, stretch {low:.3g} .. {high:.3g}, "
-            f"rms {fit.rms_MPa:.2g} MPa, R2 {fit.r2:.4f}; {_ASSUMED}"
+            f"rms {fit.rms_MPa:.2g} MPa, R2 {fit.r2:.4f}{alone}; {_ASSUMED}"
         ),
         stretch_range=fit.stretch_range,
         rms_MPa=fit.rms_MPa,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,8 +10,9 @@ from scipy.optimize import minimize_scalar
 
 from fem.material import Law, MooneyRivlin, kinematics
 from profiletool.errors import UnreadableInput
-from profiletool.files.columns import NUMBER, read_lines, shown
+from profiletool.files.columns import NUMBER, read_lines
 from profiletool.records.units import FloatArray
+from profiletool.rubber.columns import Columns, columns_of, needs_header
 
 MOST_POINTS = 20_000
 LEAST_POINTS = 5  # stretched ones
@@ -21,9 +21,7 @@ STRETCHES = (0.4, 8.0)
 WORST_RMS = 0.15  # of the range of the stress
 STIFFNESSES = (5e-4, 5.0)  # of C10 + C01, MPa: from gels to tyres
 _STEPS, _STEP, _TIGHT = 60, 0.2, 1e-13
-_UNITS = {"mpa": 1.0, "n/mm2": 1.0, "n/mm^2": 1.0, "n/mm²": 1.0, "kpa": 1e-3}
-_OTHER_UNITS = {"pa", "gpa", "psi", "ksi", "bar", "n"}
-_TRUE = re.compile("true|cauchy")
+MAX_WORDS = 30  # lines of words before the first point
 
 
 @dataclass(frozen=True)
@@ -190,8 +188,9 @@ def read_uniaxial(data: bytes) -> tuple[FloatArray, FloatArray]:
     ----------
     data : bytes
         Text as `profiletool.files.columns.read_lines` takes it, of the columns stretch and nominal
-        stress in MPa. A header line may name them in any order and among others: ``stretch`` or
-        ``strain`` (a fraction), and ``stress``, ``stress_MPa`` or ``stress_kPa``.
+        stress in MPa. A header line may name them in any order and among others: ``stretch``,
+        ``strain`` or ``log strain``, and ``stress``; and their units, as in ``strain (%)`` and
+        ``stress_kPa``, or in a line of their own.
 
     Returns
     -------
@@ -203,65 +202,24 @@ def read_uniaxial(data: bytes) -> tuple[FloatArray, FloatArray]:
     UnreadableInput
         Naming the line that makes no sense.
     """
-    columns: _Columns | None = None
+    columns: Columns | None = None
+    header: list[str] = []
     rows: list[tuple[float, float]] = []
+    words = 0
     for number, fields in read_lines(data):
-        if columns is None:
-            if not any(NUMBER.fullmatch(field) for field in fields):
-                columns = _header(fields)
-                continue
-            columns = _Columns(0, 1, 2)
+        if not rows and not any(NUMBER.fullmatch(field) for field in fields) and words < MAX_WORDS:
+            words += 1
+            found = columns_of(fields)
+            if found is not None:
+                columns, header = found, fields
+            elif columns is not None and len(fields) == len(header):
+                columns = columns_of(header, fields) or columns
+            continue
+        if columns is None and words:
+            raise needs_header()
+        columns = columns or Columns()
         rows.append(columns.row(fields, number))
         if len(rows) > MOST_POINTS:
             raise UnreadableInput(f"more than {MOST_POINTS} points; thin them out")
     points = np.array(rows).reshape(-1, 2)
-    if columns is not None:
-        points = points * (1.0, columns.unit) + (columns.offset, 0.0)
     return points[:, 0], points[:, 1]
-
-
-@dataclass(frozen=True)
-class _Columns:
-    """Where a line holds what; without a header a line holds nothing else."""
-
-    stretch: int
-    stress: int
-    fields: int
-    offset: float = 0.0
-    unit: float = 1.0
-
-    def row(self, fields: list[str], number: int) -> tuple[float, float]:
-        if len(fields) != self.fields:
-            raise UnreadableInput(
-                f"line {number} holds {len(fields)} fields, not {self.fields}; "
-                "give stretch and nominal stress in MPa"
-            )
-        values: list[float] = []
-        for field in (fields[self.stretch], fields[self.stress]):
-            value = float(field) if NUMBER.fullmatch(field) else np.nan
-            if not np.isfinite(value):
-                raise UnreadableInput(
-                    f"line {number}: {shown(field)} is no finite number; "
-                    "give stretch and nominal stress in MPa"
-                )
-            values.append(value)
-        return values[0], values[1]
-
-
-def _header(fields: list[str]) -> _Columns:
-    names = [field.strip("\"' ").lower() for field in fields]
-    nominal = [n for n, name in enumerate(names) if not _TRUE.search(name)]
-    along = [n for n in nominal if re.search("stretch|lambda|strain", names[n])]
-    across = [n for n in nominal if "stress" in names[n] and n not in along]
-    if len(along) != 1 or len(across) != 1:
-        raise UnreadableInput(
-            'the header must name one column "stretch" or "strain" and one "stress_MPa" or '
-            '"stress_kPa", nominal (force over the cross-section before the test), not true stress'
-        )
-    named, units = names[along[0]], set(re.split(r"[\s_()\[\],]+", names[across[0]]))
-    if "%" in named or "percent" in named:
-        raise UnreadableInput("the strain is in percent; divide it by 100 and name it strain")
-    if units & _OTHER_UNITS:
-        raise UnreadableInput("the header gives the stress in another unit; convert it to MPa")
-    unit = next((_UNITS[name] for name in sorted(units) if name in _UNITS), 1.0)
-    return _Columns(along[0], across[0], len(fields), 1.0 if "strain" in named else 0.0, unit)

@@ -8,16 +8,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from profiletool.errors import NoObject, UsageError
+from profiletool.errors import NoObject
 from profiletool.image.load import load_picture
 from profiletool.profile.drawing.load import SUFFIXES, load_vector
 from profiletool.profile.side import top_middle
-from profiletool.profile.target import Reach, profile_of_line, profile_of_object
+from profiletool.profile.target import Reach, profile_of_object
 from profiletool.records.picture import Picture, Scale, Silhouette
 from profiletool.records.profile import DrawnLine, Profile
-from profiletool.records.request import Look, Request, ScaleRequest
+from profiletool.records.request import Look, Request
 from profiletool.records.side import Side
-from profiletool.subject.photo import changed, see, turn_of
+from profiletool.subject.drawing import see_drawing, sides_apart
+from profiletool.subject.photo import see
 
 _WRONG_SCALE = {
     "height": {"top", "bottom"},
@@ -72,9 +73,12 @@ def find_subject(request: Request, say: Callable[[str], None]) -> Subject:
     if isinstance(given, Profile):
         return Subject(None, None, Scale(1.0, "vector"), None, given)
     if given is None and request.file.suffix.lower() in SUFFIXES:
-        given = load_vector(request.file)
+        given = load_vector(request.file, request.look.layer)
     if isinstance(given, DrawnLine):
-        return _drawn_subject(request, given, reach, say)
+        line = see_drawing(given, request.scale, request.look)
+        profile = line.profile(reach)
+        say(line.told(profile))
+        return Subject(None, None, line.scale, None, profile, line.rotated_deg, line.notes)
     picture = load_picture(request.file) if given is None else given
     seen = see(picture, request.scale, request.look, say)
     silhouette, scale = seen.silhouette, seen.scale
@@ -93,23 +97,9 @@ def find_subject(request: Request, say: Callable[[str], None]) -> Subject:
     )
     reach = replace(reach, noise_mm=silhouette.noise_px * k, spacing_mm=k)
     profile = profile_of_object(outline, reach)
+    notes = (*picture.notes, *seen.notes, *sides_apart(float(width), request.scale))
     place = float(origin[0]), float(origin[1])
-    return Subject(seen.picture, silhouette, scale, place, profile, seen.rotated_deg, seen.notes)
-
-
-def _drawn_subject(
-    request: Request, drawn: DrawnLine, reach: Reach, say: Callable[[str], None]
-) -> Subject:
-    look, points = request.look, drawn.points
-    if not drawn.closed and (look.rotate == "auto" or look.symmetric):
-        raise UsageError("`rotate` auto and `symmetric` need an object; this is an open profile")
-    turn = turn_of(points, look.rotate)
-    make = profile_of_object if drawn.closed else profile_of_line
-    profile = make(changed(points, turn, look.symmetric), reach)
-    kind = "closed outline" if drawn.closed else "open profile"
-    x, y = profile.points[0]
-    say(f"drawing: {kind}, {profile.length_mm:.1f} mm to follow from ({x:.1f}, {y:.1f}) down")
-    return Subject(None, None, Scale(1.0, "vector"), None, profile, turn)
+    return Subject(seen.picture, silhouette, scale, place, profile, seen.rotated_deg, notes)
 
 
 def digest_of(request: Request) -> str:
@@ -137,13 +127,16 @@ def _check_frame(silhouette: Silhouette, scale: Scale, side: Side) -> None:
 
 def drawing_notes(request: Request, subject: Subject) -> Iterator[str]:
     """Say what the user should know of how the picture was read."""
-    if subject.silhouette is None:
-        if request.scale != ScaleRequest():
-            yield "a drawing is in mm already: the scale options were not used"
-        if request.look != Look(rotate=request.look.rotate, symmetric=request.look.symmetric):
-            yield "a drawing needs no `box`, `point` or `mask`: they were not used"
-        return
     yield from subject.notes
+    if subject.silhouette is None:
+        asked, look = request.scale, request.look
+        if asked.marker_mm is not None or asked.camera_distance_mm is not None:
+            yield "a drawing shows no marker: `marker_mm` and `camera_distance_mm` were not used"
+        if look != Look(rotate=look.rotate, symmetric=look.symmetric, layer=look.layer):
+            yield "a drawing needs no `box`, `point`, `mask` or `flat`: they were not used"
+        return
+    if request.look.layer is not None:
+        yield "a picture has no `layer`: it was not used"
     if subject.silhouette.touches:
         edges = ", ".join(sorted(subject.silhouette.touches))
         yield f"the object runs out of the frame ({edges}); the profile ends there"

@@ -12,8 +12,7 @@ from profiletool.errors import NoObject
 from profiletool.image.find.hint import Hint, check_hint
 from profiletool.image.find.silhouette import find_silhouette
 from profiletool.image.load import load_mask
-from profiletool.image.marker import find_markers
-from profiletool.image.scale import scale_of
+from profiletool.image.scale import markers_for, scale_of
 from profiletool.image.sheet.rectify import Rectified, edge_warnings, rectify
 from profiletool.profile.symmetry import LARGEST_MISMATCH, mirrored_mean, symmetry_of
 from profiletool.profile.upright import turned, turned_px, upright_of, y_up
@@ -78,7 +77,7 @@ def see(picture: Picture, asked: ScaleRequest, look: Look, say: Callable[[str], 
     )
     scale = None
     if sheet is not None and unsized(asked):
-        silhouette, scale = measure_on_sheet(sheet, silhouette, asked)
+        silhouette, scale = measure_on_sheet(sheet, silhouette, asked, look.flat)
     turn = turn_of(y_up(silhouette.contour_px), look.rotate)
     if look.rotate == "auto" and turn:
         say(f"turned upright by {turn:.1f} deg counter-clockwise; `rotate` DEG turns it otherwise")
@@ -86,7 +85,7 @@ def see(picture: Picture, asked: ScaleRequest, look: Look, say: Callable[[str], 
     if look.symmetric:
         upright = _symmetric(upright)
     if scale is None:
-        scale = scale_of(frontal, upright, asked)
+        scale = scale_of(frontal, upright, asked, look.flat)
     if sheet is not None:
         upright = replace(upright, mask=sheet.photo_mask_of(upright.mask))
     notes += _notes(upright, scale, look)
@@ -108,8 +107,7 @@ def _found(
     picture: Picture, sheet: Rectified | None, hint: Hint, asked: ScaleRequest
 ) -> Silhouette:
     if sheet is None:
-        markers = find_markers(picture) if asked.marker_mm is not None else []
-        return find_silhouette(picture, markers, hint)
+        return find_silhouette(picture, markers_for(picture, asked), hint)
     return find_on_sheet(picture, sheet, hint, asked)
 
 
@@ -208,6 +206,11 @@ def _notes(silhouette: Silhouette, scale: Scale, look: Look) -> Iterator[str]:
         yield (
             f"the scale from the {scale.source} may be {100.0 * error:.1f} % off: it is surer "
             f"{surer}, and `height_mm` or `width_mm` settle it"
+        )
+    if scale.round_mm is not None:
+        yield (
+            f"the object was taken for a round one, {scale.round_mm:.0f} mm thick: if it is flat, "
+            f"it is {100.0 * scale.flat_share:.1f} % larger, which `flat` says"
         )
     if look.rotate == 0.0:
         yield from _lean(silhouette)

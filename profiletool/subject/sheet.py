@@ -20,6 +20,7 @@ from profiletool.profile.upright import turned_px, upright_of, y_up
 from profiletool.records.picture import Picture, Scale, Silhouette
 from profiletool.records.request import ScaleRequest
 
+_ROUND_MISMATCH = 0.012  # of a body of revolution's section, which noise and blur make
 _DISTANT = 0.1  # share by which a measured distance may be off what the sheet shows
 
 
@@ -81,7 +82,7 @@ def find_on_sheet(
 
 
 def measure_on_sheet(
-    sheet: Rectified, silhouette: Silhouette, asked: ScaleRequest
+    sheet: Rectified, silhouette: Silhouette, asked: ScaleRequest, flat: bool = False
 ) -> tuple[Silhouette, Scale]:
     """Measure an object whatever its way up: with its axis upright, then turned back.
 
@@ -99,17 +100,21 @@ def measure_on_sheet(
     camera = replace(sheet.camera, foot_px=(float(foot[0]), float(foot[1])))
     stands = replace(silhouette, contour_px=turned_px(silhouette.contour_px, turn, middle))
     turned_sheet = replace(sheet, camera=camera)
-    made = measure(turned_sheet, stands, distance_mm)
+    made = measure(turned_sheet, stands, distance_mm, flat=flat)
     # A slanting view spoils the symmetry of what is seen, not that of a round body's section.
-    if made.round and upright_of(y_up(made.silhouette.contour_px)).mismatch > LARGEST_MISMATCH:
+    mismatch = upright_of(y_up(made.silhouette.contour_px)).mismatch if made.round else 1.0
+    if made.round and mismatch > LARGEST_MISMATCH:
         made = measure(turned_sheet, stands, distance_mm, revolved=False)
     contour = turned_px(made.silhouette.contour_px, -turn, middle)
     scale = made.scale
+    if mismatch > _ROUND_MISMATCH and not flat:  # hardly a round body: its thickness is anyone's
+        share = math.hypot(made.measured_share, max(made.shape_share, scale.flat_share))
+        scale = replace(scale, error_share=share)
     if asked.marker_mm is not None:
-        flat = marker_scale(sheet.picture, asked.marker_mm)
-        share = math.hypot(flat.error_share or 0.0, scale.error_share or 0.0)
-        size = flat.mm_per_px / (sheet.picture.mm_per_px or 1.0)
-        scale = Scale(size * scale.mm_per_px, "marker", share)
+        printed = marker_scale(sheet.picture, asked.marker_mm)
+        share = math.hypot(printed.error_share or 0.0, scale.error_share or 0.0)
+        size = printed.mm_per_px / (sheet.picture.mm_per_px or 1.0)
+        scale = replace(scale, mm_per_px=size * scale.mm_per_px, source="marker", error_share=share)
     return replace(silhouette, contour_px=contour), scale
 
 

@@ -12,15 +12,16 @@ import numpy as np
 from profiletool.records.units import FloatArray
 from profiletool.template.strokes import text_strokes, text_width
 
-LayerName = Literal["CUT_OUTER", "CUT_INNER", "MARK", "NOTE", "REF"]
+LayerName = Literal["MARK", "CUT_INNER", "CUT_OUTER", "NOTE", "REF"]
 Anchor = Literal["left", "centre", "right"]
 Box = tuple[float, float, float, float]
 
-# Layer: (AutoCAD colour index, the same colour for SVG).
+# Layer: (AutoCAD colour index, the same colour for SVG), in the order of the files: a part that
+# is cut loose first moves, so its marks and inner cuts come before its outline.
 COLOURS: dict[LayerName, tuple[int, str]] = {
-    "CUT_OUTER": (7, "#000000"),
-    "CUT_INNER": (5, "#0000ff"),
     "MARK": (3, "#00a000"),
+    "CUT_INNER": (5, "#0000ff"),
+    "CUT_OUTER": (7, "#000000"),
     "NOTE": (1, "#ff0000"),
     "REF": (8, "#808080"),
 }

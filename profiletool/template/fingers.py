@@ -13,53 +13,42 @@ import shapely
 
 from profiletool.profile.symmetry import Symmetry
 from profiletool.records.design import Design
-from profiletool.records.frames import Shape
+from profiletool.records.frames import Pose, base_axes, direction
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
 from profiletool.template.labels import short
-from profiletool.template.palm import ASIDE_MM, EDGE_MM, HOLE_MM, Clamp, Palm
+from profiletool.template.palm import ASIDE_MM, EDGE_MM, HOLE_MM, ClampedTube, Palm
 
 WASHER_MM = 7.0  # of an M3 screw: closer than this two of them cannot be tightened
 BETWEEN_MM = 1.0  # from tube to tube
-# Fingers that are held shorter slip: a saddle needs this for an M3 hole with a rim on both sides.
-LEAST_CLAMP_MM = 4.0
 ROUND_OBJECT_MM = 1.0  # around an object that reaches through the palm
-FITTING_MM = 20.0  # an air fitting with the start of its hose, behind the clamped end
-_NO_GAIN = 0.01  # a tube closer to upright (0.6 deg) comes no farther from the axis
+FITTING_MM = 20.0  # an air fitting with the start of its hose, behind the open end
+_LEVEL = 0.01  # a tube closer to level than this (0.6 deg) never meets the palm
+_SAME_MM = 1e-6
+_TOUCHES_MM = 0.5  # a tube is so soft
+_LEFT_DIAMETERS = 2.0  # of profile that a finger must be left
+_SLIDES_SHARE = 0.3  # of the root, by which the base lies back of the start at most
 _STEEP = 0.5  # a palm whose normal is farther from upright (60 deg) is not placed by the axis
 
 
-def clamp_of(design: Design, profile: Profile, straight: Shape) -> Clamp:
-    """Return what is held of a tube at rest: up to the first joint's cut.
+def clamped(pose: Pose, design: Design, side: float) -> ClampedTube:
+    """Return what is held of a design's tube whose object-facing line starts in ``pose``.
 
-    Raises
-    ------
-    ValueError
-        The first joint's cut leaves nothing to hold.
+    ``side`` is +1 where the finger reaches to the right, else -1.
     """
-    first = design.joints[0].openF_mm if design.joints else 0.0
-    length = design.tube.root_mm - first / 2
-    if not length > 0.0:
-        raise ValueError("the first joint's cut leaves no root to clamp")
-    along = straight.facing[-1] - straight.facing[0]
-    outward = straight.far[0] - straight.facing[0]
-    diameter = float(np.hypot(*outward))
-    return Clamp(
-        straight.facing[0],
-        along / np.hypot(*along),
-        outward / diameter,
-        length,
-        diameter,
-        -profile.sign,
-    )
+    length, heading = design.clamp.length_mm, float(np.radians(pose.heading_deg))
+    along, outward = base_axes(heading, -side)
+    edge = np.array([pose.x_mm, pose.y_mm])
+    diameter = design.tube.outer_diameter_mm
+    return ClampedTube(edge - length * along, along, outward, length, diameter, side)
 
 
-def palm_of(clamp: Clamp, outline: FloatArray | None, symmetry: Symmetry | None) -> Palm:
+def palm_of(clamp: ClampedTube, outline: FloatArray | None, symmetry: Symmetry | None) -> Palm:
     """Lay out the palm: three fingers around a body of revolution, or two, else one.
 
     Parameters
     ----------
-    clamp : Clamp
+    clamp : ClampedTube
     outline : (N, 2) array, mm, or None
         The object, closed, where there is one.
     symmetry : Symmetry or None
@@ -84,57 +73,102 @@ def clear_radius(fingers: int, half_width: float, between: float) -> float:
     return float((between / 2 + half_width * np.cos(a)) / np.sin(a))
 
 
-def shortening(clamp: Clamp, axis: float, fingers: int) -> float:
-    """Return what each tube must lose at its clamped end to clear its neighbours, mm.
-
-    Infinite where no cut helps: what points straight down comes no farther from the axis.
-    """
-    inner, _ = _span(clamp, axis)
-    lack = clear_radius(fingers, clamp.diameter_mm / 2, BETWEEN_MM) - inner
-    gain = float(clamp.side * clamp.along[0])
-    if lack <= 0.0:
-        return 0.0
-    # In whole tenths, as it is lettered; not one more for a rounding error.
-    return float(np.ceil(10.0 * lack / gain - 1e-6)) / 10.0 if gain > _NO_GAIN else np.inf
-
-
-def obstacle(clamp: Clamp, axis: float, fingers: int, outline: FloatArray) -> str:
+def obstacle(clamp: ClampedTube, axis: float, fingers: int, outline: FloatArray) -> str:
     """Return what keeps so many fingers from sharing a palm; nothing where they can."""
-    cut = shortening(clamp, axis, fingers)
-    if np.isinf(cut):
-        return "they stand closer than the tubes are wide"
-    # A clamp that is short already is no reason to stand alone.
-    if cut > 0.0 and clamp.length_mm - cut < LEAST_CLAMP_MM:
-        return (
-            f"each clamp of {short(clamp.length_mm)} mm would have to lose {short(cut)} mm at its "
-            f"clamped end to clear the others, and keep {LEAST_CLAMP_MM:g} mm to hold by"
+    (inner, outer), clear = _span(clamp, axis), _clear(clamp, fingers)
+    if inner < clear - _SAME_MM:
+        where = (
+            f"{short(inner)} mm from the object's axis"
+            if inner >= 0.0
+            else f"{short(-inner)} mm beyond the object's axis"
         )
+        return f"their tubes would meet: they begin {where}, and need {short(clear)} mm before it"
+    if in_object(clamp, outline):
+        return "they would be held inside the object"
     palm = _around(clamp, axis, fingers, outline)
-    if palm.saddle_mm > palm.span_mm[1] - LEAST_CLAMP_MM / 2:
+    if palm.saddle_mm > outer - WASHER_MM / 2:
         return "their screws would meet"
     if palm.opening_mm + EDGE_MM > np.hypot(palm.saddle_mm, palm.aside_mm) - HOLE_MM / 2:
         return "the object is too wide above them to reach through between their screws"
     return ""
 
 
-def _least_saddle(clamp: Clamp, fingers: int) -> float:
+def in_object(clamp: ClampedTube, outline: FloatArray) -> bool:
+    """Tell whether the object is where the tube is to be held."""
+    held = shapely.Polygon(clamp.ring).buffer(-_TOUCHES_MM)
+    return bool(held.intersects(shapely.Polygon(outline).buffer(0.0)))
+
+
+def start_for(
+    fingers: int, design: Design, profile: Profile, axis: float, stretch_pct: tuple[float, float]
+) -> int | None:
+    """Return where on the side so many fingers could start to share a palm.
+
+    Parameters
+    ----------
+    fingers : int
+    design : Design
+        Its tube and clamp.
+    profile : Profile
+        With an outline.
+    axis : float
+        x of the object's axis, mm.
+    stretch_pct : (float, float)
+        Where on the side the profile starts and ends, %.
+
+    Returns
+    -------
+    int or None
+        The least start below that of the profile, %; None where there is none.
+    """
+    assert profile.outline is not None
+    low, high = stretch_pct
+    longest = profile.length_mm - _LEFT_DIAMETERS * design.tube.outer_diameter_mm
+    for pct in range(int(np.floor(low)) + 1, int(np.ceil(high))):
+        # Half a percent to both sides fits too: a start is found anew for every stretch.
+        places = (pct + np.array([-0.5, 0.0, 0.5]) - low) / (high - low) * profile.length_mm
+        if places[-1] > longest:
+            return None
+        # Where joint 1 is wanted before the root allows it, the base lies back of the start.
+        poses = (
+            _pose_at(profile, s, back)
+            for s in places.tolist()
+            for back in (0.0, _SLIDES_SHARE * design.tube.root_mm)
+        )
+        tubes = (clamped(pose, design, -profile.sign) for pose in poses)
+        if not any(obstacle(tube, axis, fingers, profile.outline) for tube in tubes):
+            return pct
+    return None
+
+
+def _pose_at(profile: Profile, s: float, back: float) -> Pose:
+    k = min(int(np.searchsorted(profile.s, s)), len(profile.s) - 1)
+    heading = float(profile.heading[k])
+    x, y = (profile.points[k] - back * direction(heading)).tolist()
+    return Pose(x, y, float(np.degrees(heading)))
+
+
+def _clear(clamp: ClampedTube, fingers: int) -> float:
+    """Return the least r of tubes that leave each other room."""
+    return clear_radius(fingers, clamp.diameter_mm / 2, BETWEEN_MM)
+
+
+def _least_saddle(clamp: ClampedTube, fingers: int) -> float:
     """Return the least r of screws that do not meet those of the next finger."""
     return clear_radius(fingers, clamp.diameter_mm / 2 + ASIDE_MM, WASHER_MM)
 
 
-def _span(clamp: Clamp, axis: float) -> tuple[float, float]:
+def _span(clamp: ClampedTube, axis: float) -> tuple[float, float]:
     """Return the least and the largest r of a clamp as seen from above."""
     r = clamp.side * (clamp.ring[:, 0] - axis)
     return float(r.min()), float(r.max())
 
 
-def _around(clamp: Clamp, axis: float, fingers: int, outline: FloatArray) -> Palm:
-    cut = shortening(clamp, axis, fingers)
+def _around(clamp: ClampedTube, axis: float, fingers: int, outline: FloatArray) -> Palm:
     inner, outer = _span(clamp, axis)
-    inner += cut * max(float(clamp.side * clamp.along[0]), 0.0)
     level = float(clamp.ring[:, 1].max())
     first = 180.0 if clamp.side < 0 else 0.0
-    fitting, meet = _fittings(clamp, axis, cut, level)
+    fitting, meet = _fittings(clamp, axis, level)
     return Palm(
         origin=np.array([axis, level]),
         along=np.array([clamp.side, 0.0]),
@@ -144,16 +178,14 @@ def _around(clamp: Clamp, axis: float, fingers: int, outline: FloatArray) -> Pal
         span_mm=(inner, outer),
         diameter_mm=clamp.diameter_mm,
         saddle_mm=max((inner + outer) / 2, _least_saddle(clamp, fingers)),
-        cut_off_mm=cut,
-        held_mm=clamp.length_mm - cut,
-        base_mm=float(clamp.side * (clamp.start[0] - axis)),
+        base_mm=float(clamp.side * (clamp.edge[0] - axis)),
         fitting_mm=fitting,
         fittings_meet=meet,
         opening_mm=_opening(outline, axis, level),
     )
 
 
-def _single(clamp: Clamp, axis: float | None) -> Palm:
+def _single(clamp: ClampedTube, axis: float | None) -> Palm:
     end = clamp.at(0.0, clamp.diameter_mm)
     on_axis = axis is not None and bool(abs(clamp.along[0]) > _STEEP)
     r = float((end[0] - axis) / clamp.along[0]) if on_axis and axis is not None else 0.0
@@ -166,21 +198,19 @@ def _single(clamp: Clamp, axis: float | None) -> Palm:
         span_mm=(r, r + clamp.length_mm),
         diameter_mm=clamp.diameter_mm,
         saddle_mm=r + clamp.length_mm / 2,
-        cut_off_mm=0.0,
-        held_mm=clamp.length_mm,
-        base_mm=r,
+        base_mm=r + clamp.length_mm,
     )
 
 
-def _fittings(clamp: Clamp, axis: float, cut: float, level: float) -> tuple[float | None, bool]:
+def _fittings(clamp: ClampedTube, axis: float, level: float) -> tuple[float | None, bool]:
     """Return the r at which air fittings meet the palm, if they do, or that they meet each other.
 
-    They stick out straight behind the clamped ends. Nearer to the axis than half a tube there is
+    They stick out straight behind the open ends. Nearer to the axis than half a tube there is
     no room for those of all fingers.
     """
-    x, y = clamp.at(cut, clamp.diameter_mm / 2).tolist()
+    x, y = clamp.at(0.0, clamp.diameter_mm / 2).tolist()
     down, out = -float(clamp.along[1]), float(clamp.side * clamp.along[0])
-    rise = (level - y) / down if down > _NO_GAIN else np.inf
+    rise = (level - y) / down if down > _LEVEL else np.inf
     r = clamp.side * (x - axis) - min(rise, FITTING_MM) * out
     if r < clamp.diameter_mm / 2:
         return None, True

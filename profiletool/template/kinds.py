@@ -72,7 +72,7 @@ KINDS: dict[Variant, TemplateKind] = {
         register="Register line: weld end edge here",
         steps=(
             f"Plot {_MEASURE}",
-            "Cut the black outline with its notch.",
+            "Cut the black outline with its notch: straight side at x = 0, the clamp's edge.",
             _CUT,
             "Lay the sheet this face up, the tube on top. Glue the start edge on the tube's "
             "{seam}° line.",
@@ -93,8 +93,8 @@ KINDS: dict[Variant, TemplateKind] = {
             "around, this face outside. On a rotary cutter: x along the rod, y around it, as seen "
             "from outside.",
             _CUT,
-            "Pull the sleeve over the tube: notch at the clamped end, seam line on the tube's "
-            "{seam}° line.",
+            "Pull the sleeve over the tube, up to its open end: the notch's straight side is "
+            "x = 0, the clamp's edge. Seam line on the tube's {seam}° line.",
             "Fasten both ends. It must neither turn nor slide.",
         ),
     ),
@@ -109,8 +109,9 @@ KINDS: dict[Variant, TemplateKind] = {
             f"Print {_MEASURE}",
             "Roll gauze of {size} mm {times} around the tube: glued on its {seam}° line, welded "
             "there at the end.",
-            "Cut the strip out with its notch. Wrap it around the gauze, this face outside, start "
-            "edge on the weld line. Tape the tab down.",
+            "Cut the strip out with its notch: its straight side is x = 0, the clamp's edge. Wrap "
+            "it around the gauze from the open end on, this face outside, start edge on the weld "
+            "line. Tape the tab down.",
             "Prick through both ends of each blue line. Take the strip off.",
             "Cut from prick to prick with fine scissors, all layers: they sever the axial threads. "
             "The hoop threads stay whole.",

@@ -3,32 +3,29 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from profiletool.joints.roll import roll_of
 from profiletool.joints.windows import SeamChoice, seam_at
-from profiletool.records.design import Design, Joint
+from profiletool.records.design import Design
 from profiletool.records.units import FloatArray
 from profiletool.template.drawing import Box, Drawing, Line
 from profiletool.template.kerf import check_kerf, outline_path, slit_paths
 from profiletool.template.kinds import KINDS, PLAIN, Wish
 from profiletool.template.labels import joint_labels
-from profiletool.template.margins import LEFT_MM, RIGHT_MM, gaps, margins
+from profiletool.template.margins import LEFT_MM, NOTCH_MM, RIGHT_MM, margins
 from profiletool.template.notes import notes, title_of
-from profiletool.template.unroll import Slit, slits
+from profiletool.template.unroll import Slit, sheet_size, slits
 
-NOTCH_MM = 3.0
-LEAST_NOTCH_MM = 0.5
 PAGE_MM = 196.0  # width of the notes: with margins that of a page
 BLOCK_MM = 6.0  # from the marks to the notes
 
 
 @dataclass(frozen=True)
 class Sheet:
-    """A cut template: x along the tube, y up along the roll.
+    """A cut template: x along the tube from the clamp's edge, y up along the roll.
 
     Attributes
     ----------
@@ -37,7 +34,7 @@ class Sheet:
     parts : (Drawing, Drawing)
         The piece with its marks, and the notes, for a page each.
     size_mm : (float, float)
-        The piece: along the tube, along the roll.
+        The piece: along the tube from the open end to the closed one, along the roll.
     outline : (N, 2) float
         Its closed outline, first point not repeated, counter-clockwise.
     slits : tuple of Slit
@@ -67,12 +64,12 @@ def build_sheet(design: Design, wish: Wish = PLAIN) -> Sheet:
         raise ValueError("a template needs a tube of some length and at least one turn of gauze")
     check_kerf(wish.kerf_mm, gauze.pitch_mm, gauze.thread_mm)
     kind, roll = KINDS[wish.variant], roll_of(tube, gauze, wish.variant)
-    size = tube.length_mm, roll.length_mm
+    size = sheet_size(design, wish.variant)
+    ends = design.clamp.open_end_mm, tube.length_mm
     seam = seam_at(design.joints, gauze.seam_deg)
     cuts = slits(design.joints, tube, gauze, wish.variant)
-    notch = _notch(design.joints, size[0])
-    outline = _outline((size[0], size[1] + kind.tab_mm), notch)
-    around = margins(design.joints, size[0], roll, kind, seam)
+    outline = _outline(ends, size[1] + kind.tab_mm)
+    around = margins(design.joints, ends, roll, kind, seam)
     title = title_of(design, kind.title)
     paths = slit_paths(cuts, size[1], wish.kerf_mm)
     piece = Drawing(
@@ -82,12 +79,13 @@ def build_sheet(design: Design, wish: Wish = PLAIN) -> Sheet:
             *paths,
             *around.lines,
         ),
-        (*joint_labels(design, roll, cuts, _barred(size, notch)), *around.texts),
+        (*joint_labels(design, roll, cuts, _barred(tube.length_mm, size[1])), *around.texts),
     )
-    right = max(size[0] + RIGHT_MM, PAGE_MM - LEFT_MM)
+    left = ends[0] - LEFT_MM
+    right = max(ends[1] + RIGHT_MM, left + PAGE_MM)
     top = size[1] + kind.tab_mm + around.above_mm + BLOCK_MM
     told = design, size, seam, wish, len(cuts) - len(paths)
-    beside = notes(*told, (-LEFT_MM, right, top, -around.below_mm - BLOCK_MM))
+    beside = notes(*told, (left, right, top, -around.below_mm - BLOCK_MM))
     alone = notes(*told, (0.0, PAGE_MM, 0.0, -BLOCK_MM))
     return Sheet(
         Drawing(title, piece.drawn + beside.drawn, piece.texts + beside.texts),
@@ -99,32 +97,16 @@ def build_sheet(design: Design, wish: Wish = PLAIN) -> Sheet:
     )
 
 
-def _notch(joints: Sequence[Joint], length: float) -> Box | None:
-    """Return the box of the notch in the start edge: in the root, else in the widest gap."""
-    room = [gap for gap in gaps(joints, length, 0.0) if _notch_width(gap) >= LEAST_NOTCH_MM]
-    if not room:
-        return None
-    a, b = room[0] if room[0][0] == 0 else max(room, key=lambda gap: gap[1] - gap[0])
-    half = _notch_width((a, b)) / 2
-    return (a + b) / 2 - half, 0.0, (a + b) / 2 + half, 2 * half
+def _barred(length: float, roll: float) -> list[Box]:
+    """Return where no label may stand: in the clamp, and beyond the closed end."""
+    return [(-math.inf, 0.0, 0.0, roll), (length, 0.0, math.inf, roll)]
 
 
-def _barred(size: tuple[float, float], notch: Box | None) -> list[Box]:
-    """Return where no label may stand: beyond the ends of the tube, and the notch."""
-    length, roll = size
-    beyond = [(-math.inf, 0.0, 0.0, roll), (length, 0.0, math.inf, roll)]
-    return [*beyond, notch] if notch else beyond
+def _outline(ends: tuple[float, float], roll: float) -> FloatArray:
+    """Return the outline (N, 2) mm, counter-clockwise, with a notch in its start edge.
 
-
-def _notch_width(gap: tuple[float, float]) -> float:
-    return min(NOTCH_MM, (gap[1] - gap[0]) / 2)
-
-
-def _outline(size: tuple[float, float], notch: Box | None) -> FloatArray:
-    """Return the outline (N, 2) mm, counter-clockwise, with the notch in its start edge."""
-    length, roll = size
-    corners = [[0.0, 0.0], [length, 0.0], [length, roll], [0.0, roll]]
-    if notch:
-        x0, _, x1, depth = notch
-        corners[1:1] = [[x0, 0.0], [(x0 + x1) / 2, depth], [x1, 0.0]]
-    return np.array(corners)
+    The notch lies in the clamp, where it weakens nothing; its straight side is x = 0.
+    """
+    (open_end, closed), n = ends, NOTCH_MM
+    notch = [[-n, 0.0], [0.0, n], [0.0, 0.0]]
+    return np.array([[open_end, 0.0], *notch, [closed, 0.0], [closed, roll], [open_end, roll]])

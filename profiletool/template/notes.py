@@ -9,6 +9,7 @@ import numpy as np
 
 from profiletool.joints.windows import SeamChoice, off_mesh, slit_rows
 from profiletool.records.design import TOWARD_DEG, Design
+from profiletool.records.seal import proven
 from profiletool.template.drawing import (
     RULER_MM,
     Box,
@@ -125,7 +126,7 @@ def legend(
         "seam": short(design.gauze.seam_deg),
         "times": times(design.gauze.turns),
         "diameter": f"{design.tube.outer_diameter_mm:g}",
-        "size": " x ".join(short(side) for side in sheet_size(design.tube, design.gauze)),
+        "size": " x ".join(short(side) for side in sheet_size(design)),
     }
     width = min(right - left, LEGEND_MM)
     hang = text_width("1 ", SMALL_MM) + SMALL_MM / 4
@@ -171,7 +172,7 @@ def title_lines(design: Design, what: str) -> list[str]:
     lines = [f"{what}: {_shortened(name, TITLE_MM, NAME_MM)}"]
     if not design.feasible:
         lines.append("INFEASIBLE")
-    if not design.verified:
+    if not proven(design):
         lines.append("NOT VERIFIED")
     return lines
 
@@ -182,7 +183,8 @@ def _facts(design: Design, size: tuple[float, float], wish: Wish) -> list[str]:
     date = "".join(char for char in wish.date if char.isprintable())
     return [
         f"Tube D {tube.outer_diameter_mm:g}, wall {tube.wall_mm:g}, length "
-        f"{short(tube.length_mm)} mm.  Pressure {design.pressure_bar:.2f} bar.  "
+        f"{short(tube.length_mm)}, clamp {short(design.clamp.length_mm)} mm.  "
+        f"Pressure {design.pressure_bar:.2f} bar.  "
         f"Joints: {len(design.joints)}." + (f"  {date[:DATE_CHARS]}" if date else ""),
         f"{KINDS[wish.variant].piece} {short(size[0])} x {short(size[1])} mm, mesh "
         f"{gauze.pitch_mm:g} mm, thread {gauze.thread_mm:g} mm{turns}, seam "

@@ -6,7 +6,7 @@ around the axis of a body of revolution share a level one, whatever the slope of
 Glossary
 --------
 plan : seen along the palm's normal, from the side away from the tubes; x to the right as in the
-    side view, y away from who looks at it; origin the object's axis, or the tube's clamped end
+    side view, y away from who looks at it; origin the object's axis, or the tube's open end
     where the object has none; mm
 r : distance from the plan's origin along a finger, outward, mm
 """
@@ -25,16 +25,17 @@ EDGE_MM = 6.0  # from clamps and holes to the palm's edge
 
 
 @dataclass(frozen=True)
-class Clamp:
-    """The straight piece of tube that is held, in the object frame.
+class ClampedTube:
+    """The straight piece of tube in its clamp, in the object frame.
 
     Attributes
     ----------
     start : (2,) mm
-        Where the object-facing line begins, at the clamped end.
+        Where its object-facing line begins, at the open end.
     along, outward : (2,)
         Unit vectors along the tube, and from its object-facing to its far line.
     length_mm, diameter_mm : float
+        From the open end to the clamp's edge; of the tube.
     side : float
         +1 where the finger reaches to the right, else -1.
     """
@@ -45,6 +46,11 @@ class Clamp:
     length_mm: float
     diameter_mm: float
     side: float
+
+    @property
+    def edge(self) -> FloatArray:
+        """Base point of the design, (2,) mm: the object-facing line at the clamp's edge."""
+        return self.at(self.length_mm, 0.0)
 
     @property
     def slope_deg(self) -> float:
@@ -83,12 +89,8 @@ class Palm:
         Of a tube.
     saddle_mm : float
         r of the screws.
-    cut_off_mm : float
-        What every tube loses at its clamped end to clear its neighbours.
-    held_mm : float
-        What is left of the clamp, along the tube.
     base_mm : float
-        r of the base point, nothing cut off.
+        r of the base point, at the clamp's edge.
     fitting_mm : float or None
         r at which the air fittings run into the palm; None where they do not.
     fittings_meet : bool
@@ -105,8 +107,6 @@ class Palm:
     span_mm: tuple[float, float]
     diameter_mm: float
     saddle_mm: float
-    cut_off_mm: float
-    held_mm: float
     base_mm: float
     fitting_mm: float | None = None
     fittings_meet: bool = False

@@ -9,8 +9,9 @@ from profiletool.records.units import FloatArray
 from profiletool.template.callouts import Callout
 from profiletool.template.draughting import CHAIN, LETTER_MM, dashed, dimension
 from profiletool.template.drawing import Line, Text, circle, polyline, wrapped
+from profiletool.template.mounted import Mounted
 from profiletool.template.palm import HOLE_MM, Palm
-from profiletool.template.side_view import COLUMN_MM, Mounted, View
+from profiletool.template.side_view import COLUMN_MM, View
 
 WORDS_MM = 84.0  # width of the column beside the plan
 _HEAD_MM = 3.5
@@ -38,8 +39,8 @@ def plan_view(mounted: Mounted, place: FloatArray) -> View:
 
 
 def _reach(palm: Palm) -> float:
-    """Return the r at which finger 1's centre line ends."""
-    return max(palm.reach_mm[1], palm.span_mm[1]) + _PAST_MM
+    """Return the r at which finger 1's centre line ends: beyond palm, clamp and origin."""
+    return max(palm.reach_mm[1], palm.span_mm[1], 0.0) + _PAST_MM
 
 
 def _cuts(palm: Palm, place: FloatArray) -> tuple[Line, ...]:
@@ -92,11 +93,11 @@ def _callouts(palm: Palm, place: FloatArray) -> tuple[Callout, ...]:
         away = float(np.degrees(np.arctan2(y, x)))
         numbers.append(Callout(str(k + 1), hole + place, away, leader=False))
     end = palm.in_plan(0, (palm.span_mm[0], -0.3 * palm.diameter_mm))[0] + place
-    zero = "0: object's axis" if palm.on_axis else "0: middle of the tube's clamped end"
+    zero = "0: object's axis" if palm.on_axis else "0: middle of the tube's open end"
     return (
         *numbers,
         Callout(zero, place, back - 30.0),
-        Callout("clamped end, air fitting", end, back + 30.0),
+        Callout("open end, air fitting", end, back + 30.0),
     )
 
 
@@ -120,7 +121,7 @@ def _facts(mounted: Mounted) -> list[str]:
         low, high = palm.span_mm
         facts += [
             f"{palm.fingers} fingers, {360 // palm.fingers}° apart, clamped from r = {low:.1f} to "
-            f"{high:.1f}. Base points as designed: r = {palm.base_mm:.1f}.",
+            f"{high:.1f}. Base points (x = 0): r = {palm.base_mm:.1f}.",
             f"Palm: disc of diameter {2 * palm.radius_mm:.0f}.",
         ]
         if palm.opening_mm:
@@ -132,10 +133,6 @@ def _facts(mounted: Mounted) -> list[str]:
             f"Palm: x from {edges.min():.1f} to {edges.max():.1f}, {2 * palm.half_width_mm:.0f} "
             f"across. The tube's closed end lies to the {end}."
         )
-    if palm.fitting_mm is not None:
-        facts.append(f"Air fittings run into the palm: bore for them at r = {palm.fitting_mm:.1f}.")
-    if palm.fittings_meet:
-        facts.append("Air fittings meet at the axis: take elbows, up through the palm.")
     return [
         *facts,
         f"Saddle over each clamp: bore {bore:g} (tube and gauze), two M3 screws. Between "
@@ -146,8 +143,8 @@ def _facts(mounted: Mounted) -> list[str]:
 
 def _strap_room(mounted: Mounted) -> float:
     """Return how far the object is from the middle of the clamp, mm."""
-    clamp, palm = mounted.clamp, mounted.palm
-    under = shapely.Point(clamp.at(palm.cut_off_mm + palm.held_mm / 2, 0.0))
+    clamp = mounted.clamp
+    under = shapely.Point(clamp.at(clamp.length_mm / 2, 0.0))
     outline = mounted.profile.outline
     body = shapely.LineString(mounted.body) if outline is None else shapely.Polygon(outline)
     return float(under.distance(body))

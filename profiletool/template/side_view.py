@@ -7,9 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from profiletool.profile.side import top_middle
-from profiletool.profile.symmetry import Symmetry
-from profiletool.records.design import Design
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
@@ -24,10 +21,10 @@ from profiletool.template.draughting import (
     pieces,
     smooth,
 )
-from profiletool.template.drawing import Box, Line, Text, arrow, circle, extent, polyline
-from profiletool.template.palm import Clamp, Palm
+from profiletool.template.drawing import Box, Line, Text, arrow, circle, extent
+from profiletool.template.mounted import PLATE_MM, Mounted, plates_of
+from profiletool.template.palm import ClampedTube, Palm
 
-PLATE_MM = 5.0  # the palm is drawn so thick; whatever is stiff will do
 COLUMN_MM = 8.0  # from a view to its dimensions, and from one row of them to the next
 _OFF_OUTLINE_MM, _LEAST_OFF_MM = 0.3, 2.0  # the profile is drawn where it is so far off so long
 _TICK_MM = 2.0
@@ -49,34 +46,6 @@ class View:
     callouts: tuple[Callout, ...]
 
 
-@dataclass(frozen=True)
-class Mounted:
-    """What the drawing shows: a design, its tube at rest and under pressure, clamp and palm.
-
-    ``symmetry`` is the outline's, where there is one.
-    """
-
-    design: Design
-    profile: Profile
-    straight: Shape
-    bent: Shape
-    symmetry: Symmetry | None
-    clamp: Clamp
-    palm: Palm
-
-    @property
-    def datum(self) -> FloatArray:
-        """What the base is measured from, (2,): the object's top middle, or the profile's top."""
-        outline = self.profile.outline
-        return self.profile.points[0] if outline is None else top_middle(outline)
-
-    @property
-    def body(self) -> FloatArray:
-        """The object's outline, or the profile that was drawn instead, (N, 2)."""
-        outline = self.profile.outline
-        return self.profile.points if outline is None else outline
-
-
 def side_view(mounted: Mounted) -> View:
     """Return the side view in the object frame, with the dimensions around it."""
     shapes = _shapes(mounted)
@@ -90,29 +59,19 @@ def side_view(mounted: Mounted) -> View:
     )
 
 
-def plates_of(palm: Palm) -> tuple[FloatArray, ...]:
-    """Return the palm in the side view, (4, 2) mm; in two pieces where it has an opening."""
-    (low, high), hole = palm.reach_mm, palm.opening_mm
-    spans = ((low, -hole), (hole, high)) if hole else ((low, high),)
-    return tuple(
-        np.array([palm.at(*p) for p in ((a, 0.0), (b, 0.0), (b, PLATE_MM), (a, PLATE_MM))])
-        for a, b in spans
-    )
-
-
 def _shapes(mounted: Mounted) -> tuple[Line, ...]:
     """Return all but dimensions; of lines that run on each other the first one is to stay."""
     clamp, profile = mounted.clamp, mounted.profile
     middle, length = clamp.diameter_mm / 2, clamp.length_mm
+    x, y = clamp.edge.tolist()
     axis = np.array([clamp.at(-_PAST_MM, middle), clamp.at(length + _PAST_MM, middle)])
     return (
         Line("MARK", clamp.ring, closed=True),
-        *_cut_off(mounted),
-        circle("MARK", float(clamp.start[0]), float(clamp.start[1]), 1.0),
+        circle("MARK", x, y, 1.0),
         *(Line("REF", plate, closed=True) for plate in plates_of(mounted.palm)),
         smooth("REF", mounted.body, closed=profile.outline is not None),
-        smooth("REF", _beyond(mounted.bent, length)),
-        *dashed("REF", _beyond(mounted.straight, length), DASHES),
+        smooth("REF", _around(mounted.bent)),
+        *dashed("REF", _around(mounted.straight), DASHES),
         _profile_end(profile),
         *(smooth("NOTE", piece) for piece in _off_outline(profile)),
         *dashed("MARK", axis, CHAIN),
@@ -120,17 +79,9 @@ def _shapes(mounted: Mounted) -> tuple[Line, ...]:
     )
 
 
-def _cut_off(mounted: Mounted) -> tuple[Line, ...]:
-    """Return where the tube is to be cut shorter."""
-    clamp, cut = mounted.clamp, mounted.palm.cut_off_mm
-    ends = (-_TICK_MM, clamp.diameter_mm + _TICK_MM)
-    return (polyline("MARK", *(clamp.at(cut, end).tolist() for end in ends)),) if cut else ()
-
-
-def _beyond(shape: Shape, length: float) -> FloatArray:
+def _around(shape: Shape) -> FloatArray:
     """Return a tube's outline from the clamp around its closed end, (N, 2)."""
-    free = shape.along >= length - 1e-6
-    return np.concatenate([shape.facing[free], shape.far[free][::-1]])
+    return np.concatenate([shape.facing, shape.far[::-1]])
 
 
 def _profile_end(profile: Profile) -> Line:
@@ -156,7 +107,7 @@ def _object_axis(mounted: Mounted) -> tuple[Line, ...]:
     return dashed("REF", np.array([[symmetry.axis_x_mm, y] for y in ends]), CHAIN)
 
 
-def _clamp_dimensions(clamp: Clamp) -> tuple[Line, ...]:
+def _clamp_dimensions(clamp: ClampedTube) -> tuple[Line, ...]:
     """Return the dimension lines of clamp and tube, to be lettered by callouts."""
     across = clamp.diameter_mm
     near, end = clamp.at(0.0, across), clamp.at(clamp.length_mm, across)
@@ -169,7 +120,7 @@ def _clamp_dimensions(clamp: Clamp) -> tuple[Line, ...]:
 def _dimensions(mounted: Mounted, box: Box) -> tuple[tuple[Line, ...], tuple[Text, ...]]:
     """Return the object's size and the base's place, outside ``box``."""
     x0, y0, x1, y1 = box
-    body, base, datum = mounted.body, mounted.clamp.start, mounted.datum
+    body, base, datum = mounted.body, mounted.clamp.edge, mounted.datum
     left, low = (body[k] for k in body.argmin(axis=0))
     right, high = (body[k] for k in body.argmax(axis=0))
     # Upright ones stand where no tube is.
@@ -217,8 +168,8 @@ def _view_arrow(palm: Palm) -> tuple[tuple[Line, ...], Callout]:
 
 
 def _callouts(mounted: Mounted) -> tuple[Callout, ...]:
-    clamp, palm, bent = mounted.clamp, mounted.palm, mounted.bent
-    across, base = clamp.diameter_mm, clamp.start
+    clamp, bent = mounted.clamp, mounted.bent
+    across, base = clamp.diameter_mm, clamp.edge
     free, outward, backward = (
         _deg(way) for way in ([-clamp.side, 0.0], clamp.outward, -clamp.along)
     )
@@ -235,6 +186,7 @@ def _callouts(mounted: Mounted) -> tuple[Callout, ...]:
             base,
             free + 20.0 * clamp.side,
         ),
+        Callout("x = 0: edge of the clamp", clamp.at(clamp.length_mm, 0.8 * across), outward),
         Callout("air fitting here: keep clear", clamp.at(0.0, 0.3 * across), backward),
         Callout(
             f"tube at {mounted.design.pressure_bar:.2f} bar",
@@ -244,9 +196,6 @@ def _callouts(mounted: Mounted) -> tuple[Callout, ...]:
         Callout("tube at rest", at_rest, outward),
         Callout("profile ends", mounted.profile.points[-1], 180.0 - free),
     ]
-    if palm.cut_off_mm:
-        at = clamp.at(palm.cut_off_mm, -_TICK_MM)
-        found.append(Callout(f"cut off here: {palm.cut_off_mm:.1f}", at, _deg(-clamp.outward)))
     beside = max(_off_outline(mounted.profile), key=len, default=None)
     if beside is not None:
         found.append(Callout("profile", beside[len(beside) // 2], 180.0 - free))

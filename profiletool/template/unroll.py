@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from profiletool.joints.roll import Variant, roll_of, window_intervals
 from profiletool.joints.windows import SAME_DEG, slit_rows
-from profiletool.records.design import Gauze, Joint, Tube
+from profiletool.records.design import Design, Gauze, Joint, Tube
 
 SAME_MM = 1e-6
 
@@ -22,9 +22,10 @@ class Slit:
     y_end_mm: float
 
 
-def sheet_size(tube: Tube, gauze: Gauze, variant: Variant = "gauze") -> tuple[float, float]:
-    """Return the sheet's size (along the tube, along the roll) in mm."""
-    return tube.length_mm, roll_of(tube, gauze, variant).length_mm
+def sheet_size(design: Design, variant: Variant = "gauze") -> tuple[float, float]:
+    """Return the sheet's size (along the tube from open to closed end, along the roll) in mm."""
+    along = design.clamp.length_mm + design.tube.length_mm
+    return along, roll_of(design.tube, design.gauze, variant).length_mm
 
 
 def slits(

@@ -131,5 +131,6 @@ def _design(
         warnings=(),
         method=request.method,
         model=request.model,
+        clamp=spec.clamp,
     )
     return replace(design, threads=threads_of(design))

@@ -26,6 +26,11 @@ def model_notes(design: Design, refined: bool) -> Iterator[str]:
         return
     if design.threads_off_mm is not None:
         yield from threads_note(design.threads_off_mm)
+    elif design.threads:
+        yield (
+            "no state with the sheet's single threads lies near that of the smeared gauze: the "
+            "tube may bend far otherwise; `profiletool verify --threads` says how far"
+        )
     length = design.tube.length_mm
     mesh = f"the mesh leaves up to {_MESH_SHARE * length:.1f} mm in the shape"
     if design.model == PAPER_MODEL and design.tube.rubber is None:

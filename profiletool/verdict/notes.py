@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from formula.theta import Formula, beyond
+from profiletool.bending.kinematics import deform
 from profiletool.joints.layout import Layout
 from profiletool.joints.misfit import depth_inside
 from profiletool.joints.paper.assign import NEAR_DEG
@@ -18,11 +19,13 @@ from profiletool.records.fe import FeState
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
 from profiletool.records.request import TubeSpec
+from profiletool.records.rubber import breaking_stretch
 from profiletool.subject.find import drawing_notes
+from profiletool.template.mounted import mounted_of, mounting_warnings
 from profiletool.verdict.draft import Draft
 from profiletool.verdict.missed import Missed
 from profiletool.verdict.model import model_notes
-from profiletool.verify.cautions import BREAKS, strained, uncertain
+from profiletool.verify.cautions import strained, uncertain
 from profiletool.verify.check import Check
 
 _FORMULA_LOW_ABOVE_BAR = 1.2
@@ -46,6 +49,8 @@ def notes_of(attempt: Draft, reasons: Sequence[str], misses: Sequence[Missed]) -
         *disagreement(design.joints, design.pressure_bar),
         *shape_warnings(attempt.best_shape, attempt.profile, request.tolerance_mm or DEPTH_MM),
         *_gauze_notes(attempt.plan.layout, design.gauze),
+        *_coarse(design),
+        *_mounting_notes(attempt),
         *_fe_notes(attempt.check),
         *model_notes(design, request.method == "optimal" and request.refine),
     )
@@ -154,11 +159,13 @@ def shape_warnings(shape: Shape, profile: Profile, depth_mm: float) -> Iterator[
 def wear(state: FeState, design: Design) -> Iterator[str]:
     """Say what strains the tube at its operating pressure, by FE."""
     worst = max(design.joints, key=lambda joint: joint.stretch_fe or 0.0)
+    breaks = breaking_stretch(design.tube.rubber)
+    limit = "its data sheet tells where it breaks" if breaks is None else f"breaks at {breaks:g}"
     yield (
         f"the rubber is stretched most at joint {worst.number}: {worst.stretch_fe:.1f} times "
-        f"(silicone breaks at {BREAKS:g} times)"
+        f"({limit})"
     )
-    yield from strained(state)
+    yield from strained(state, breaks)
     if state.slack_share > _SLACK_SHARE:
         yield (
             f"axial threads are slack on {100.0 * state.slack_share:.0f} % of the wrapped surface: "
@@ -192,6 +199,27 @@ def _fe_notes(checked: Check | None) -> Iterator[str]:
     elif checked.run is not None:
         yield from wear(checked.run.verification.last, checked.design)
         yield from uncertain(checked.design.theta_uncertain)
+
+
+def _coarse(design: Design) -> Iterator[str]:
+    """Say where a picture's pixels are larger than what the design claims to be off."""
+    fit, k = design.fit.fe or design.fit.response or design.fit.formula, design.source.mm_per_px
+    if k is not None and k > fit.rms_mm:
+        yield (
+            f"a pixel of the picture is {k:.2g} mm, more than the {fit.rms_mm:.2f} mm RMS that the "
+            "shape is off: the outline itself is hardly known that well"
+        )
+
+
+def _mounting_notes(attempt: Draft) -> Iterator[str]:
+    """Say what the mounting drawing warns of."""
+    request, design, profile = attempt.request, attempt.design, attempt.profile
+    tube = design.tube
+    straight = deform(
+        (), tube.length_mm, 0.5 * tube.outer_diameter_mm, design.base_pose, profile.sign
+    )
+    stretch = request.start_pct, request.end_pct
+    return mounting_warnings(mounted_of(design, profile, straight, attempt.best_shape, stretch))
 
 
 def _gauze_notes(layout: Layout, gauze: Gauze) -> Iterator[str]:

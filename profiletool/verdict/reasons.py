@@ -12,6 +12,7 @@ from profiletool.joints.layout import Layout
 from profiletool.joints.optimal.choose import TOLERANCE_MM
 from profiletool.joints.paper.pieces import Rules
 from profiletool.joints.paper.sectors import BendingSector
+from profiletool.joints.plan import GOOD_SHARE
 from profiletool.records.design import Design, Misfit
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request, TubeSpec
@@ -20,7 +21,6 @@ from profiletool.verdict.holds import broken
 from profiletool.verdict.missed import Missed, missed
 from profiletool.verdict.notes import SLACK
 
-GOOD_SHARE = 0.01  # of the profile's length: RMS of a shape that is called good
 WORST = 3.0  # times that: the farthest that any place of it may lie off
 _SLACK_MM = 0.05  # that nobody can see
 
@@ -135,6 +135,12 @@ def not_good(
     """Give reasons why an optimal plan is no design; none where it is good enough."""
     fit, limit = _judged(design, profile, request)
     reasons = []
+    longest = request.tube.max_length_mm
+    if design.tube.length_mm > longest + _SLACK_MM:
+        reasons.append(
+            f"the tube would be {design.tube.length_mm:.1f} mm long, more than {longest:g} mm; "
+            "shorten the stretch (`start_pct`, `end_pct`), or raise `max_length_mm`"
+        )
     if fit.rms_mm > limit:
         reasons.append(
             f"the best shape found lies {fit.rms_mm:.2f} mm RMS and up to {fit.max_mm:.2f} mm off "
@@ -145,12 +151,6 @@ def not_good(
         reasons.append(
             f"there is no room for {request.joints} joints on this profile, only "
             f"{len(design.joints)}"
-        )
-    longest = request.tube.max_length_mm
-    if design.tube.length_mm > longest + _SLACK_MM:
-        reasons.append(
-            f"the tube would be {design.tube.length_mm:.1f} mm long, more than {longest:g} mm; "
-            "shorten the stretch (`start_pct`, `end_pct`), or raise `max_length_mm`"
         )
     return tuple(reasons)
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from profiletool.records.built import Built
+from profiletool.records.built import Built, mm_text
 from profiletool.records.design import Design, Joint, Misfit
+from profiletool.records.seal import proven
 
 
 def joint_table(design: Design) -> str:
@@ -11,7 +12,7 @@ def joint_table(design: Design) -> str:
     extra = [("formula deg", "theta_formula_deg")]
     if any(j.theta_response_deg is not None for j in design.joints):
         extra.append(("response deg", "theta_response_deg"))
-    if design.verified:
+    if proven(design):
         extra.append(("FE deg", "theta_fe_deg"))
     lines = [
         f"{design.source.file}: {_counted(len(design.joints))} at {design.pressure_bar:.2f} bar, "
@@ -21,24 +22,28 @@ def joint_table(design: Design) -> str:
     ]
     lines += [
         f"{j.number:5d}  {j.F_mm:6.1f}  {j.openF_mm:8g}  {j.alpha_closed_deg:16.4g}  "
-        f"{j.alpha_center_deg:16g}  {j.theta_target_deg:9.1f}"
+        f"{j.alpha_center_deg:16g}  {j.signed(j.theta_target_deg):9.1f}"
         + "".join(f"  {_angle(design, j, name):>{len(head)}}" for head, name in extra)
         for j in design.joints
     ]
-    lines.append(f"by the formula off the profile:        {off_text(design.fit.formula)}")
-    if design.fit.response is not None:
-        lines.append(f"by the joint response off the profile: {off_text(design.fit.response)}")
+    lines.append("theta is positive toward the object, negative away from it")
     if design.fit.fe is not None:
         lines.append(f"by FE off the profile:                 {off_text(design.fit.fe)}")
     if design.built is not None:
         lines.append(f"built by hand, off the profile:        {built_text(design.built)}")
+    if design.fit.response is not None:
+        lines.append(f"by the joint response off the profile: {off_text(design.fit.response)}")
+    lines.append(f"by the formula off the profile:        {off_text(design.fit.formula)}")
     return "\n".join(lines) + "\n"
 
 
 def _angle(design: Design, joint: Joint, name: str) -> str:
     """Give an angle of a joint, marked where finite elements cannot tell it for certain."""
+    angle: float | None = getattr(joint, name)
+    if angle is None:
+        return "–"
     doubtful = name == "theta_fe_deg" and joint.number in design.theta_uncertain
-    return f"{'~' if doubtful else ''}{getattr(joint, name):.1f}"
+    return f"{'~' if doubtful else ''}{joint.signed(angle):.1f}"
 
 
 def off_text(misfit: Misfit) -> str:
@@ -50,8 +55,8 @@ def built_text(built: Built) -> str:
     """Say what to expect of the actuator that is built, as it is set and as its pressure is."""
     expected = built.expected_rms_mm
     return (
-        f"{expected.as_set:.2f} mm RMS expected at the planned pressure, "
-        f"{expected.trimmed:.2f} mm after the pressure is set on it"
+        f"{mm_text(expected.as_set)} mm RMS expected at the planned pressure, "
+        f"{mm_text(expected.trimmed)} mm after the pressure is set on it"
     )
 
 
@@ -63,7 +68,7 @@ def summary(design: Design) -> str:
     """Joints, distances, verdict and notes of a design as text."""
     verdict = (
         "feasible" if design.feasible else "INFEASIBLE",
-        "verified by finite elements" if design.verified else "NOT VERIFIED",
+        "verified by finite elements" if proven(design) else "NOT VERIFIED",
     )
     notes = [f"note: {text}" for text in design.warnings]
     return joint_table(design) + "\n".join((", ".join(verdict), *notes))
@@ -73,13 +78,13 @@ def _built_short(design: Design) -> str:
     if design.built is None:
         return ""
     expected = design.built.expected_rms_mm
-    return f" with perfect parts ({expected.trimmed:.2f} mm expected once built and set)"
+    return f" with perfect parts ({mm_text(expected.trimmed)} mm expected once built and set)"
 
 
 def headline(design: Design) -> str:
     """Say in one line what a design is."""
     fit = design.fit.fe or design.fit.response or design.fit.formula
-    verified = "verified" if design.verified else "NOT VERIFIED"
+    verified = "verified" if proven(design) else "NOT VERIFIED"
     return (
         f"{design.source.file}: {_counted(len(design.joints))} at {design.pressure_bar:.2f} bar, "
         f"{fit.rms_mm:.2f} mm RMS off the profile{_built_short(design)}, "

@@ -8,18 +8,17 @@ from profiletool.records.design import named
 from profiletool.records.fe import FeState, Verification
 from profiletool.verify.run import too_little
 
-BREAKS = 9.5  # stretch of the paper's silicone at break: 850 % of strain
 # Above, no law of two constants holds: silicone stiffens as its chains come to their end, and the
 # laws of the presets are checked for stability up to here only.
 LAW_HOLDS = 3.0
-_TEARS_SOON = 0.5 * BREAKS
+_TEARS_SOON = 0.5  # of the stretch at break
 _BULGES = 0.1  # of the radius; the paper's joints reach 0.06 at 2.0 bar
 
 
 def cautions(found: Verification) -> tuple[str, ...]:
     """Say what of a run's last state is beyond what the model holds for."""
     last = found.last
-    said = [*strained(last), *uncertain(found.theta_uncertain)]
+    said = [*strained(last, found.breaks), *uncertain(found.theta_uncertain)]
     overlapping = [state for state in found.states if state.touches]
     if overlapping:
         first, deepest = overlapping[0], max(state.overlap_mm for state in overlapping)
@@ -32,14 +31,17 @@ def cautions(found: Verification) -> tuple[str, ...]:
     return tuple(said)
 
 
-def strained(state: FeState) -> Iterator[str]:
-    """Say where rubber and gauze are strained beyond what the model holds for."""
+def strained(state: FeState, breaks: float | None) -> Iterator[str]:
+    """Say where rubber and gauze are strained beyond what the model holds for.
+
+    ``breaks`` is the stretch at which the rubber breaks, None where nothing tells.
+    """
     most = state.largest_stretch
-    if most > _TEARS_SOON:
-        where = "more than" if most > BREAKS else "more than half of"
+    if breaks is not None and most > _TEARS_SOON * breaks:
+        where = "more than" if most > breaks else "more than half of"
         yield (
             f"the rubber is stretched {most:.1f} times at {state.pressure_bar:.2f} bar, {where} "
-            f"what silicone breaks at ({BREAKS:g} times): ask for less pressure or a thicker wall"
+            f"what it breaks at ({breaks:g} times): ask for less pressure or a thicker wall"
         )
     if most > LAW_HOLDS:
         over = [k for k, s in enumerate(state.joint_stretch, start=1) if s > LAW_HOLDS]

@@ -46,7 +46,7 @@ def with_errors(
 
 
 def _threads_off(design: Design, run: Run) -> BuiltMisfit | None:
-    """Say what the sheet's single threads do; None where no tube stands with them."""
+    """Say what the sheet's single threads do; None where that is not near what smeared ones do."""
     try:
         return sheet_off(design, run.solution)
     except FemError:

@@ -8,7 +8,7 @@ import numpy as np
 
 from fem.errors import FemError
 from fem.sensitivity import Rate, sensitivities
-from profiletool.joints.closest import closest_points
+from profiletool.joints.closest import closest_points, spaced
 from profiletool.records.design import Design
 from profiletool.records.frames import base_axes
 from profiletool.records.side import side_sign
@@ -88,3 +88,8 @@ def fields_of(design: Design, run: Run, points: FloatArray) -> ErrorFields | Non
         by_wall,
         by_rubber,
     )
+
+
+def even_points(target: FloatArray) -> FloatArray:
+    """Space a target's points (N, 2) mm evenly, as the fields are to be found at: (M, 2)."""
+    return spaced(target)

@@ -29,16 +29,23 @@ from profiletool.verify.tube import tube_of
 
 
 class FeForwardModel:
-    """A forward model by finite elements of the whole actuator."""
+    """A forward model by finite elements of the whole actuator; ``told`` is called for each."""
 
-    def __init__(self, spec: TubeSpec, model: ModelInputs = PAPER_MODEL) -> None:
-        self._spec, self._model = spec, model
+    def __init__(
+        self,
+        spec: TubeSpec,
+        model: ModelInputs = PAPER_MODEL,
+        told: Callable[[], None] | None = None,
+    ) -> None:
+        self._spec, self._model, self._told = spec, model, told
         self._rates: tuple[Solution, Sensitivities] | None = None  # the last ones found
 
     def bend(
         self, posed: PosedChain, sign: float, near: Iterate[Solution] | None
     ) -> tuple[Shape, Solution]:
         """Bend an actuator, from a similar one's state where that leads there."""
+        if self._told is not None:
+            self._told()
         try:
             axes = base_axes(float(np.radians(posed.pose.heading_deg)), sign)
             tube = tube_of(posed.chain, self._spec, self._model, axes)

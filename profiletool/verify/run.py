@@ -14,9 +14,11 @@ from fem.loadpath import Options
 from fem.mesh import Mesh
 from fem.solution import Solution, State
 from fem.solver import solve
+from formula.rubber import RubberLaw
 from profiletool.records.design import Design, joints_too_near
 from profiletool.records.fe import CriticalPoint, FeState, Verification
 from profiletool.records.frames import Pose
+from profiletool.records.rubber import breaking_stretch
 from profiletool.records.side import side_sign
 from profiletool.records.units import BAR_PER_MPA, FloatArray
 from profiletool.verify.lines import Placement, placed_shape
@@ -143,7 +145,7 @@ def run_design(design: Design, pressure_bar: float, progress: Progress | None = 
     ------
     fem.errors.NotConverged, fem.errors.BadGeometry
     """
-    return inflate(
+    run = inflate(
         actuator_of(design),
         pressures_to(pressure_bar),
         design.base_pose,
@@ -152,6 +154,13 @@ def run_design(design: Design, pressure_bar: float, progress: Progress | None = 
         progress=progress,
         margin=MARGIN if abs(pressure_bar - design.pressure_bar) < 1e-6 else 0.0,
     )
+    return breaking(run, design.tube.rubber)
+
+
+def breaking(run: Run, rubber: RubberLaw | None) -> Run:
+    """Tell a run at which stretch its rubber breaks."""
+    breaks = breaking_stretch(rubber)
+    return replace(run, verification=replace(run.verification, breaks=breaks))
 
 
 def shortly(error: NotConverged) -> str:

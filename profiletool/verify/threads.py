@@ -24,7 +24,7 @@ from fem.solution import Solution
 from fem.solver import solve
 from profiletool.joints.closest import closest_points
 from profiletool.joints.threads import whole_angles
-from profiletool.records.built import BuiltMisfit
+from profiletool.records.built import BuiltMisfit, mm_text
 from profiletool.records.design import Design
 from profiletool.records.frames import Shape, base_axes
 from profiletool.records.side import side_sign
@@ -75,7 +75,8 @@ def threads_off(design: Design, lines: AxialLines, smeared: Solution | None = No
     design : Design
     lines : AxialLines
     smeared : Solution, optional
-        Of the design at its pressure; it is run where none is given.
+        Of the design at its pressure. The single threads' state is then looked for near it alone;
+        where none is given, both are run from rest if need be, which may take minutes.
 
     Returns
     -------
@@ -91,18 +92,18 @@ def threads_off(design: Design, lines: AxialLines, smeared: Solution | None = No
     actuator, pressure = actuator_of(design), design.pressure_bar / BAR_PER_MPA
     known = smeared if smeared is not None else _solved(actuator, pressure)
     facing = _shape(design, known).facing
-    single = replace(actuator, lines=lines)
-    found = _near(single, known, pressure)
+    single, from_rest = replace(actuator, lines=lines), smeared is None
+    found = _near(single, known, pressure, from_rest=from_rest)
     off, rate, flow = _gap(design, found, facing, pressure)
     as_set = _rms(off)
     for _ in range(_ROUNDS):
-        rise = -float(rate @ off) / float(rate @ rate)
+        rise = _trim(off, rate)
         if _rms(rise * rate) <= _LINEAR_MM:
             break
         pressure += rise
-        found = _near(single, found, pressure, rise * flow)
+        found = _near(single, found, pressure, rise * flow, from_rest=from_rest)
         off, rate, flow = _gap(design, found, facing, pressure)
-    trimmed = _rms(off + rise * rate)
+    trimmed = _rms(off + _trim(off, rate) * rate)
     return BuiltMisfit(round(as_set, _DECIMALS), round(trimmed, _DECIMALS))
 
 
@@ -116,7 +117,8 @@ def threads_note(off: BuiltMisfit) -> Iterator[str]:
     if off.trimmed is not None and off.trimmed > _NOTED_MM:
         yield (
             "the sheet's single threads bend the tube otherwise than the smeared gauze: "
-            f"{off.trimmed:.1f} mm RMS apart once the pressure is set, {off.as_set:.1f} before"
+            f"{off.trimmed:.1f} mm RMS apart once the pressure is set, "
+            f"{mm_text(off.as_set, 1)} before"
         )
 
 
@@ -124,12 +126,24 @@ def _rms(values: FloatArray) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
+def _trim(off: FloatArray, rate: FloatArray) -> float:
+    """Change of the pressure that leaves least of distances (N,), by their rates (N,)."""
+    return -float(rate @ off) / float(rate @ rate)
+
+
 def _near(
-    actuator: Actuator, known: Solution, pressure: float, flow: FloatArray | None = None
+    actuator: Actuator,
+    known: Solution,
+    pressure: float,
+    flow: FloatArray | None = None,
+    *,
+    from_rest: bool,
 ) -> Solution:
     try:
         return solve_near(actuator, known, pressure, flow=flow)
     except NotConverged:
+        if not from_rest:
+            raise
         return _solved(actuator, pressure)
 
 

@@ -9,6 +9,7 @@ from scipy.interpolate import CubicSpline
 
 from profiletool.errors import UnreadableInput
 from profiletool.records.design import Design
+from profiletool.records.seal import proven
 from profiletool.records.units import BoolArray, FloatArray, IntArray
 
 _SAME_DEG = 0.02  # between the trim table and the joints of one design
@@ -65,39 +66,20 @@ def curves_of(design: Design) -> Curves:
     Raises
     ------
     UnreadableInput
-        There is none, or it is not that of these joints at this pressure.
+        There is none, or finite elements did not verify the design as it is.
     """
-    if not design.verified:
+    if not proven(design):
         raise UnreadableInput(
-            "not verified by finite elements, so it holds no trim table: let design verify it"
+            "not verified by finite elements, or changed since: its trim table does not hold; the "
+            "command report makes it whole"
         )
     if len(design.trim) < 2:
         raise UnreadableInput(
-            "holds no trim table, as those of older versions: make it anew with design"
+            "holds no trim table, as those of older versions: the command report makes it whole"
         )
     planned = design.pressure_bar
     bars = np.array([point.pressure_bar for point in design.trim])
     theta = [point.theta_deg for point in design.trim]
-    counts = {len(row) for row in theta}
-    at = int(np.argmin(np.abs(bars - planned)))
-    expected = [
-        None if joint.theta_fe_deg is None else joint.signed(joint.theta_fe_deg)
-        for joint in design.joints
-    ]
-    fresh = (
-        counts == {len(expected)}
-        and bool((np.diff(bars) > 0.0).all())
-        and abs(float(bars[at]) - planned) < 1e-6
-        and all(
-            want is not None and abs(want - got) <= _SAME_DEG
-            for want, got in zip(expected, theta[at], strict=True)
-        )
-    )
-    if not fresh:
-        raise UnreadableInput(
-            f"the trim table is not that of these joints at {planned:.2f} bar: the file was "
-            "changed by hand; make it anew with design"
-        )
     tips = np.array([point.tip_mm for point in design.trim])
     return Curves(
         planned,

@@ -21,6 +21,7 @@ from profiletool.records.side import side_sign
 from profiletool.records.units import FloatArray
 
 _PAPER_THREAD_MM = 0.25
+PAPER_TUBE = TubeSpec()
 _RUBBER_G_PER_MM3, _THREAD_G_PER_MM3 = 1.1e-3, 1.14e-3  # silicone, polyamide
 _N_PER_G = 9.81e-3
 
@@ -128,10 +129,13 @@ def joint_actuator(
     )  # fmt: skip
 
 
-def finger_actuator(model: ModelInputs = PAPER_MODEL) -> Actuator:
+FINGER = ((14.0, 90.0), (16.0, 90.0), (12.0, 90.0))  # openF mm and alpha deg of the paper's Table 2
+
+
+def finger_actuator(model: ModelInputs = PAPER_MODEL, spec: TubeSpec = PAPER_TUBE) -> Actuator:
     """Model the finger of the paper's Table 2."""
-    quarter, spec = float(np.radians(90.0)), TubeSpec()
+    openF, alpha = zip(*FINGER, strict=True)
     return chain(
-        10.0, [40.0, 22.0, 20.0], [14.0, 16.0, 12.0], [quarter] * 3,
+        10.0, [40.0, 22.0, 20.0], openF, np.radians(alpha).tolist(),
         **_made_of(spec, spec, model, LYING_AXES),
     )  # fmt: skip

@@ -263,7 +263,9 @@ def test_a_run_gives_what_profiletool_joint_gives(done: Outcome) -> None:
     known = inflate(actuator_of(TASK), TASK.pressures_bar, LYING, DOWN)
     assert done.pressures_bar == TASK.pressures_bar
     assert done.failure is None
-    assert done.theta_deg == tuple(s.theta_deg[0] for s in known.verification.states)
+    theirs = [s.theta_deg[0] for s in known.verification.states]
+    assert done.theta_deg[-1] == pytest.approx(theirs[-1], rel=1e-6)
+    assert done.theta_deg == pytest.approx(theirs, abs=0.01)  # states in between are loose there
     for state, theta, dx, dy in zip(
         known.solution.states[1:], done.theta_deg, done.dx_mm, done.dy_mm, strict=True
     ):

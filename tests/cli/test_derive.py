@@ -109,6 +109,7 @@ def test_beyond_its_range_it_is_refused_or_marked(made: Path) -> None:
     assert call(*chosen).exit_code != 0
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("few_files")
 def test_a_design_has_the_tube_and_the_rubber_of_its_formula(
     made: Path, samples: Path, tmp_path: Path
@@ -176,7 +177,8 @@ def test_an_earlier_file_is_kept() -> None:
 def test_the_formula_that_comes_along_is_that_of_our_finite_elements() -> None:
     """Made anew with `derive --out formula/coefficients/fe.json` where the engine changes."""
     fe = load_formula(Path("fe"))
-    run = solve(joint_actuator(10.0, 108.0, 270.0, TubeSpec()), [0.1, 0.2], threads=1)
+    tube, tight = joint_actuator(10.0, 108.0, 270.0, TubeSpec()), Options(before=1e-6)
+    run = solve(tube, [0.1, 0.2], options=tight, threads=1)
     theta = np.degrees([state.theta[0] for state in run.states[1:]])
     np.testing.assert_allclose(theta_deg(fe, 108.0, 10.0, [1.0, 2.0]), theta, atol=0.25)
     campaign = campaign_of(read_bytes("fe"), "fe")

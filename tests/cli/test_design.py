@@ -33,6 +33,7 @@ def test_the_main_job(samples: Path, tmp_path: Path) -> None:
     assert result.stdout.splitlines()[1].split()[:3] == ["joint", "F", "mm"]
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("coarse_mesh")
 def test_a_short_tube_is_verified(tmp_path: Path) -> None:
     result = call("design", arc(tmp_path), "--method", "paper")
@@ -106,6 +107,7 @@ def check_same(one: Path, other: Path) -> None:
         assert (one / file).read_bytes() == (other / file).read_bytes(), file
 
 
+@pytest.mark.slow
 def test_same_input_same_bytes(egg: Made, samples: Path, tmp_path: Path) -> None:
     assert unverified(samples / "egg.png", "--method", "paper").exit_code == 0
     check_same(egg.folder, tmp_path / "egg_design")
@@ -129,13 +131,14 @@ def test_left_and_right_of_a_symmetric_object_agree(tmp_path: Path) -> None:
     file = picture(tmp_path / "oval.png")
     designs = []
     for side in ("left", "right"):
-        asked = ("--height", 90, "--side", side, "--joints", 4, "--out", side)
-        designs.append(json.loads(unverified(file, *asked, "--json").stdout))
+        # At 90 mm four joints end next to the tolerance: the last pixel then says how few will do.
+        result = unverified(file, "--height", 100, "--side", side, "--out", side, "--json")
+        designs.append(json.loads(result.stdout))
     left, right = designs
-    # Which of many equally good polygons is taken may differ with the last pixel; so may how few
-    # joints will do, where four of them end close to the tolerance.
+    # Which of many equally good polygons is taken may differ with the last pixel.
     turns = [sum(j["theta_target_deg"] for j in design["joints"]) for design in designs]
     assert turns[0] == pytest.approx(turns[1], abs=1.0)
+    assert len(left["joints"]) == len(right["joints"])
     assert left["source"]["profile_length_mm"] == pytest.approx(
         right["source"]["profile_length_mm"], abs=0.3
     )

@@ -69,6 +69,7 @@ def test_joint_refuses(options: tuple[str, ...], says: str, tmp_path: Path) -> N
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_finger_writes_a_folder_whole(tmp_path: Path) -> None:
     result = call("finger", "--pressure", "0.25", "--out", "finger", "--json")
     assert result.exit_code == 0, result.stderr
@@ -157,6 +158,7 @@ def test_verify_finds_the_drawing_of_a_design(samples: Path, tmp_path: Path) -> 
     assert found["fit"]["max_mm"] > 20.0  # most of the bulb is left to the other joints
 
 
+@pytest.mark.slow
 def test_verify_ends_with_7_where_the_tube_stands_hardly_more(
     samples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -36,6 +36,7 @@ def test_exit_6_for_other_limits(
     assert says in error_of(result)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("few_files")
 def test_exit_6_for_a_shape_that_is_not_good_enough(tmp_path: Path) -> None:
     (tmp_path / "corner.csv").write_text("0,80\n0,0\n80,0\n")

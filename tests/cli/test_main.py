@@ -77,4 +77,4 @@ def test_exit_codes_pass_through(
         with pytest.raises(SystemExit) as ended:
             main()
         assert ended.value.code == code
-    assert "Commands:" in capsys.readouterr().out
+    assert "Commands" in capsys.readouterr().out

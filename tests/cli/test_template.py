@@ -12,7 +12,7 @@ from tests.cli.inputs import REST
 
 def test_template_of_a_design(samples: Path, tmp_path: Path) -> None:
     assert call("template", samples / "paper_bulb.json").exit_code == 0
-    folder = tmp_path / "paper_bulb_template"
+    folder = tmp_path / "bulb_template"  # as the object is called, not the file
     assert {path.name for path in folder.iterdir()} >= {"template.dxf", "template.svg"}
     assert call("template", samples / REST).exit_code == 3
 

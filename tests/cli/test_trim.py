@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from profiletool.files.design_json import to_json
+from profiletool.records.seal import sealed
 from tests.calls import call, error_of
 from tests.verify.test_setting import PLANNED, made_up, read, tip
 
@@ -98,8 +99,8 @@ def test_files_that_do_not_tell(file: Path, samples: Path, tmp_path: Path) -> No
     assert call("trim", samples / "paper_bulb.json", *options).exit_code == 3
     design = made_up(samples)
     for changed, said in (
-        (replace(design, pressure_bar=1.7), "changed by hand; make it anew with design"),
-        (replace(design, trim=()), "holds no trim table"),
+        (replace(design, pressure_bar=1.7), "changed since: its trim table does not hold"),
+        (sealed(replace(design, trim=())), "holds no trim table"),
         (replace(design, verified=False), "not verified by finite elements"),
     ):
         file.write_text(to_json(changed))

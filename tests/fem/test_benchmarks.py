@@ -177,6 +177,7 @@ def test_cook_with_the_mean_dilatation() -> None:
     assert cook("hex8", 32, mean_dilatation=True) == pytest.approx((CORNER, MIDDLE), rel=0.01)
 
 
+@pytest.mark.slow
 def test_cook_locks_without_the_cure() -> None:
     corner, middle = cook("hex8", 8)
     assert corner < 0.5 * CORNER

@@ -48,6 +48,7 @@ def test_the_same_actuator_needs_no_step(known: Solution) -> None:
     np.testing.assert_allclose(again.states[-1].x, known.states[-1].x, atol=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("alpha_deg", "places", "length"),
     [(3.0, 0.0, 0.0), (-2.0, 0.3, 1.5), pytest.param(0.0, 0.5, 0.0, marks=pytest.mark.slow)],

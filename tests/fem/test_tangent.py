@@ -155,6 +155,7 @@ def dense(system: System, pose: Pose, pressure: float) -> FloatArray:
 TINY = MeshSize(around=2, beside=0.0, growth=2.0, edge=4.0, window=4.0, wrapped=8.0, end=8.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("center", "pressure", "amount"),
     [(270.0, 0.0, None), (270.0, 0.0, 0.1), (270.0, 3.0, 0.1), (200.0, 0.8, 0.1)],

@@ -13,7 +13,7 @@ from profiletool.files.columns import MAX_LINE, NUMBER, read_lines, shown
     [
         ("1.5,2", ["1.5", "2"]),
         ("1,5;2", ["1.5", "2"]),  # decimal commas where semicolons separate
-        ("1.5\t2,0", ["1.5", "2,0"]),
+        ("1.5\t2,0", ["1.5", "2.0"]),
         ("  1.5   2 ", ["1.5", "2"]),
         ("1.5, 2 # the last", ["1.5", "2"]),
         ("1,,2", ["1", "", "2"]),

@@ -28,6 +28,7 @@ def test_without_force_the_first_stays_and_the_others_are_refused(tmp_path: Path
     assert leftovers(tmp_path) == []
 
 
+@pytest.mark.slow
 def test_with_force_the_last_stays_whole(tmp_path: Path) -> None:
     writers = [Writer(tmp_path / "out", whose, 40, force=True) for whose in range(3)]
     assert race(writers) == ["", "", ""]

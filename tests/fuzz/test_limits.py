@@ -7,6 +7,7 @@ import random
 import struct
 import zlib
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 from PIL import Image
@@ -14,8 +15,7 @@ from PIL import Image
 from profiletool.errors import NoObject, UnreadableInput
 from profiletool.image import load, structure
 from profiletool.image.load import load_picture
-from profiletool.profile.drawing import chain, read_dxf, svg_tree
-from profiletool.profile.drawing import load as load_drawing
+from profiletool.profile.drawing import chain, choose, dxf_entities, read_dxf
 from profiletool.profile.drawing.load import load_vector
 
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="0 0 100 100">'
@@ -61,13 +61,17 @@ def test_svg_attributes_are_not_handed_down_without_end(tmp_path: Path) -> None:
     shapes = '<rect width="9" height="5"/>' * 500
     (tmp_path / "a.svg").write_text(f"{SVG}<g {extra}>{shapes}</g></svg>")
     assert len(load_vector(tmp_path / "a.svg").points) == 4
-    assert "a7" not in svg_tree._MEANT
 
 
-@pytest.mark.parametrize("limit", ["MAX_LINES", "MAX_ENTITIES", "MAX_SPLINE_POINTS"])
-def test_dxf_of_too_much(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, limit: str) -> None:
+@pytest.mark.parametrize(
+    ("module", "limit"),
+    [(read_dxf, "MAX_LINES"), (dxf_entities, "MAX_ENTITIES"), (read_dxf, "MAX_SPLINE_POINTS")],
+)
+def test_dxf_of_too_much(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, module: ModuleType, limit: str
+) -> None:
     (tmp_path / "a.dxf").write_text(DXF)
-    monkeypatch.setattr(read_dxf, limit, 1)
+    monkeypatch.setattr(module, limit, 1)
     with pytest.raises(UnreadableInput, match="more than 1 "):
         load_vector(tmp_path / "a.dxf")
 
@@ -93,6 +97,7 @@ def test_lines_that_all_end_in_one_place(tmp_path: Path, monkeypatch: pytest.Mon
         load_vector(tmp_path / "a.svg")
 
 
+@pytest.mark.slow
 def test_a_line_that_runs_to_and_fro(tmp_path: Path) -> None:
     text = "".join(f"{n % 2 * 1e4},{n % 2 * 1e4 + n * 0.01}\n" for n in range(20_000))
     (tmp_path / "a.csv").write_text(text)
@@ -104,7 +109,7 @@ def test_a_fine_outline_is_not_refused(tmp_path: Path) -> None:
     text = "".join(f"{n % 50_000 * 1e-3},{n * 1e-2}\n" for n in range(50_000))
     (tmp_path / "a.csv").write_text(text)
     assert len(load_vector(tmp_path / "a.csv").points) == 50_000
-    assert load_drawing.MAX_CLOSE_PAIRS > 50_000
+    assert choose.MAX_CLOSE_PAIRS > 50_000
 
 
 # --- pictures ---------------------------------------------------------------------------------

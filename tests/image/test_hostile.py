@@ -42,9 +42,13 @@ print(json.dumps([seen, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * uni
 """
 
 
+# A process starts with the peak of the one that it is forked from: here a small one.
+SMALL = "import subprocess, sys; sys.exit(subprocess.run(sys.argv[1:]).returncode)"
+
+
 def test_every_hostile_file_ends_well(shared: Path) -> None:
     run = subprocess.run(
-        [sys.executable, "-c", PROBE, str(shared / "hostile")],
+        [sys.executable, "-c", SMALL, sys.executable, "-c", PROBE, str(shared / "hostile")],
         capture_output=True, text=True, check=True, timeout=60,
     )  # fmt: skip
     assert run.stderr == ""
@@ -103,10 +107,8 @@ def test_largest_picture_fits_in_a_gibibyte(
     folder = tmp_path / "large"
     folder.mkdir()
     Image.new(mode, (side, side), 0).save(folder / name, compress_level=1)
-    # A process starts with the peak of the one that it is forked from: here a small one.
-    small = "import subprocess, sys; sys.exit(subprocess.run(sys.argv[1:]).returncode)"
     run = subprocess.run(
-        [sys.executable, "-c", small, sys.executable, "-c", PROBE, str(folder)],
+        [sys.executable, "-c", SMALL, sys.executable, "-c", PROBE, str(folder)],
         capture_output=True, text=True, check=True,
     )  # fmt: skip
     seen, memory = json.loads(run.stdout)

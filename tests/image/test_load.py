@@ -145,7 +145,7 @@ def test_alpha_turns_with_the_picture(tmp_path: Path) -> None:
         ("a.jpg", (300, 300), None),
         ("a.png", (72, 72), None),
         ("a.tif", (96, 96), None),
-        ("a.png", (300, 150), None),
+        ("a.png", (300, 150), 25.4 / 300),
         ("a.png", (0, 0), None),
     ],
 )

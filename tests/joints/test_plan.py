@@ -105,9 +105,9 @@ def test_every_joint_knows_its_angles(result: Result) -> None:
     assert [j.theta_response_deg for j in joints] == pytest.approx(by_response)
     wanted = np.abs(np.degrees(angles(choice.shape, choice.chain)))
     assert [j.theta_target_deg for j in joints] == pytest.approx(wanted)
-    formula = theta_deg(
-        load_formula(), np.degrees(chain.alpha), chain.openF, result.design.pressure_bar
-    )
+    assert design.formula.name == "fe"  # ours, for the paper's tube
+    ours = load_formula(Path("fe"))
+    formula = theta_deg(ours, np.degrees(chain.alpha), chain.openF, result.design.pressure_bar)
     assert [j.theta_formula_deg for j in joints] == pytest.approx(formula)
     assert all(j.theta_fe_deg is None for j in joints)
     # Rounded, but not bent all differently.
@@ -125,6 +125,7 @@ def test_places_are_those_nearest_to_the_joints(result: Result) -> None:
         assert np.hypot(*np.subtract(at, there)) == pytest.approx(nearest, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_by_a_formula_of_the_users(samples: Path, tmp_path: Path) -> None:
     import formula
 

@@ -81,6 +81,7 @@ def test_turning_all_joints_turns_the_seam(rows, turned):
     assert there.margin_deg == pytest.approx(here.margin_deg)
 
 
+@pytest.mark.slow
 @settings(max_examples=30, deadline=None)
 @given(rows=WILD)
 def test_no_place_on_the_circle_is_better(rows):

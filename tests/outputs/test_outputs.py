@@ -87,6 +87,7 @@ def test_the_folder_of_a_design() -> None:
     ]  # fmt: skip
 
 
+@pytest.mark.slow
 def test_what_a_drawing_by_the_papers_method_without_finite_elements_lacks(
     result: Result,
 ) -> None:

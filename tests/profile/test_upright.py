@@ -24,6 +24,7 @@ MUG = np.array(
 )
 
 
+@pytest.mark.slow
 @given(lean=st.floats(-55.0, 55.0), heavy_above=st.booleans())
 def test_what_leans_comes_upright_with_its_top_up(lean: float, heavy_above: bool) -> None:
     outline = turned(EGG, 180.0) if heavy_above else EGG

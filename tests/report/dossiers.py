@@ -12,6 +12,7 @@ from profiletool.bending.kinematics import Bend, deform
 from profiletool.pipeline import Request, Result, run
 from profiletool.records.design import Design, Misfit, Sensitivity
 from profiletool.records.fe import CriticalPoint, FeState, Verification
+from profiletool.records.seal import sealed
 from profiletool.records.side import side_sign
 from profiletool.report.dossier import Dossier, dossier_of
 from profiletool.report.scene import scene_of
@@ -71,7 +72,7 @@ def verified(dossier: Dossier) -> Dossier:
         replace(joint, theta_fe_deg=joint.theta_formula_deg, stretch_fe=1.5)
         for joint in design.joints
     )
-    design = replace(
+    made = replace(
         design,
         joints=joints,
         fit=replace(design.fit, fe=Misfit(0.234, 0.567)),
@@ -82,6 +83,7 @@ def verified(dossier: Dossier) -> Dossier:
             Sensitivity("one thread more or less uncut", 2, 5.6, 7.8),
         ),
     )
+    design = sealed(made)
     dossier = with_design(dossier, design)
     scene = replace(dossier.scene, fe=found.last.shape)
     return replace(dossier, scene=scene, check=Check(design, _run(found), None))
@@ -97,8 +99,8 @@ def ended_early(dossier: Dossier, reached: float) -> Dossier:
 
 def infeasible(dossier: Dossier, *reasons: str) -> Dossier:
     design = dossier.scene.design
-    design = replace(design, feasible=False, warnings=(*reasons, *design.warnings))
-    return replace(with_design(dossier, design), reasons=reasons)
+    made = replace(design, feasible=False, warnings=(*reasons, *design.warnings))
+    return replace(with_design(dossier, sealed(made)), reasons=reasons)
 
 
 def with_joints(dossier: Dossier, count: int) -> Dossier:

@@ -132,6 +132,7 @@ def test_comparison_with_a_design(samples: Path) -> None:
     assert misfit_json(Misfit(1.0, 2.0), "a")["fit"]["target"] == "a"
 
 
+@pytest.mark.slow
 def test_pictures_show_what_they_are_given() -> None:
     plain = png(theta_figure(FINGER, "finger"))
     marked = png(theta_figure(FINGER, "finger", [Mark("formula", 2.0, (70.0, 80.0, 60.0))]))

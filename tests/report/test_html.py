@@ -93,6 +93,7 @@ def test_it_is_small(page: Page) -> None:
     assert len(page.source.encode()) < 1_000_000
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["verified", "drawn, no FE"])
 def test_the_same_dossier_gives_the_same_bytes(dossiers: dict[str, Dossier], kind: str) -> None:
     first = report_html(dossiers[kind])
@@ -214,6 +215,7 @@ def test_what_moves_the_tube(pages: dict[str, Page], dossiers: dict[str, Dossier
         assert any("data-tube" in path for path in pages[kind].every("path"))
 
 
+@pytest.mark.slow
 def test_many_joints_are_no_trouble(finger: Dossier) -> None:
     page = Page(report_html(with_joints(finger, 60)))
     assert page.wrong == []

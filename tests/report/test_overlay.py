@@ -15,6 +15,7 @@ from profiletool.bending.kinematics import deform
 from profiletool.joints.misfit import misfit
 from profiletool.pipeline import Request, run
 from profiletool.records.picture import Picture
+from profiletool.records.seal import sealed
 from profiletool.report.overlay import draw_overlay
 from profiletool.report.scene import Scene, backdrop_of, scene_of
 
@@ -71,7 +72,7 @@ def by_fe(scene: Scene) -> Scene:
     shape = deform(more, design.tube.length_mm, 10.0, design.base_pose, scene.profile.sign)
     joints = tuple(replace(j, theta_fe_deg=j.theta_formula_deg * 8.0 / 7.0) for j in design.joints)
     fit = replace(design.fit, fe=misfit(shape, scene.profile))
-    verified = replace(design, joints=joints, fit=fit, verified=True, warnings=())
+    verified = sealed(replace(design, joints=joints, fit=fit, verified=True, warnings=()))
     return replace(scene, design=verified, fe=shape)
 
 
@@ -128,6 +129,7 @@ def test_finite_elements_a_millimetre_off_are_seen(bulb: Scene) -> None:
     assert worst_block(reduced(draw_overlay(scene)), reduced(draw_overlay(shifted))) > 16.0
 
 
+@pytest.mark.slow
 def test_a_tube_a_millimetre_off_is_seen(bulb: Scene) -> None:
     shifted = replace(bulb, bent=replace(bulb.bent, facing=bulb.bent.facing + 1.0))
     assert worst_block(reduced(draw_overlay(bulb)), reduced(draw_overlay(shifted))) > 16.0
@@ -147,6 +149,7 @@ def test_what_is_transparent_is_white() -> None:
     assert grey.tolist() == [[255, 40], [147, 255]]
 
 
+@pytest.mark.slow
 def test_an_infeasible_design_says_so(bulb: Scene) -> None:
     marked = replace(bulb, design=replace(bulb.design, feasible=False))
     assert worst_block(reduced(draw_overlay(bulb)), reduced(draw_overlay(marked))) > 16.0

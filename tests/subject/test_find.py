@@ -9,7 +9,7 @@ import pytest
 
 from profiletool.errors import UsageError
 from profiletool.profile.upright import turned
-from profiletool.records.request import Look, Request
+from profiletool.records.request import Look, Request, ScaleRequest
 from profiletool.subject.find import find_subject
 from tests.subject.objects import PEAR, csv
 
@@ -42,3 +42,13 @@ def test_an_open_profile_has_no_axis(tmp_path: Path) -> None:
     plain, half = find_subject(asked(file), str), find_subject(asked(file, rotate=5.0), str)
     assert half.profile.length_mm == pytest.approx(plain.profile.length_mm, rel=0.01)
     assert half.rotated_deg == 5.0
+
+
+def test_a_height_and_a_width_that_contradict_each_other_are_told(samples: Path) -> None:
+    for width, told in ((70.0, 1), (60.0, 0)):
+        scale = ScaleRequest(height_mm=107.5, width_mm=width)
+        request = Request(samples / "bulb.png", scale, verify=False)
+        subject = find_subject(request, str)
+        assert subject.scale.source == "height"
+        said = [n for n in subject.notes if "`width_mm` is 70 mm, but at a `height_mm`" in n]
+        assert len(said) == told

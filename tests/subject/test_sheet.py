@@ -139,6 +139,7 @@ def test_what_the_sheet_tells_is_not_given_another_way(lying_file: Path) -> None
         look_at(lying_file, ScaleRequest(marker_mm=30.0))
 
 
+@pytest.mark.slow
 def test_a_marker_in_the_field_sets_the_sheets_size_right(
     lying: Picture, sheet: Rectified, tmp_path: Path
 ) -> None:

@@ -10,6 +10,7 @@ from profiletool.files.design_json import load_design
 from profiletool.joints.windows import best_seam
 from profiletool.records.design import Design, Fit, FormulaRef, Gauze, Joint, Misfit, Source, Tube
 from profiletool.records.frames import Pose
+from profiletool.records.seal import sealed
 
 
 def joint(number=1, F=19.0, openF=8.0, alpha=132.0, center=270.0, theta=30.0, at=10.0) -> Joint:
@@ -26,7 +27,7 @@ def row_of_joints(rows: Sequence[Sequence[float]], root: float = 10.0) -> tuple[
 
 
 def design_of(joints: Sequence[Joint], length: float, name: str = "object.png") -> Design:
-    return Design(
+    design = Design(
         source=Source(
             file=name,
             sha256="0" * 64,
@@ -48,12 +49,13 @@ def design_of(joints: Sequence[Joint], length: float, name: str = "object.png") 
         verified=True,
         warnings=(),
     )
+    return sealed(design)
 
 
 def bulb() -> Design:
     """Read the actuator of Table 5 (root 10, end 4 mm beyond the last F), as if verified."""
     paper = load_design(Path(__file__).parents[2] / "samples" / "paper_bulb.json")
-    return replace(paper, source=replace(paper.source, file="bulb.png"), verified=True)
+    return sealed(replace(paper, source=replace(paper.source, file="bulb.png"), verified=True))
 
 
 def short_tube() -> Design:
@@ -63,12 +65,12 @@ def short_tube() -> Design:
 
 
 def long_tube() -> Design:
-    """Build twelve joints on alternating sides of 250 mm of tube."""
+    """Build twelve joints on alternating sides of 230 mm of tube."""
     rows = [
-        (20, (6, 8, 10, 12, 14)[k % 5], 84 + 6 * k, 270 if k % 2 == 0 else 90, 25)
+        (18, (6, 8, 10, 12, 14)[k % 5], 84 + 6 * k, 270 if k % 2 == 0 else 90, 25)
         for k in range(12)
     ]
-    return design_of(row_of_joints(rows, 15.0), 250.0, "garland of lamps, no. 3.jpeg")
+    return design_of(row_of_joints(rows, 15.0), 230.0, "garland of lamps, no. 3.jpeg")
 
 
 def skew() -> Design:

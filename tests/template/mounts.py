@@ -13,6 +13,7 @@ from shapely import LineString, Polygon, STRtree, box
 from profiletool.bending.kinematics import Bend, deform
 from profiletool.profile.target import Reach, profile_of_line, profile_of_object
 from profiletool.records.frames import Pose
+from profiletool.records.seal import sealed
 from profiletool.template.drawing import Drawing
 from profiletool.template.dxf import write_dxf
 from profiletool.template.mounting import mounting_drawing
@@ -40,7 +41,7 @@ def drum(width=160.0, height=60.0):
 
 def bottle():
     """A neck of radius 12 above a belly of radius 25."""
-    right = np.array([[25, -100], [25, -60], [12, -35], [12, 0]], dtype=float)
+    right = np.array([[25, -125], [25, -85], [12, -60], [12, 0]], dtype=float)
     return np.concatenate([right, right[::-1] * [-1, 1]])
 
 
@@ -93,15 +94,15 @@ def case(
     )
     bends = [Bend(j.centre_mm, j.openF_mm, j.sense * np.radians(30.0)) for j in joints]
     shapes = [deform(some, root + 60.0, D / 2, pose, profile.sign) for some in ((), bends)]
-    return design, profile, *shapes
+    return sealed(design), profile, *shapes
 
 
 CASES = {
-    "three on a flat top": lambda: case(drum(), root=40.0),
-    "three to the right": lambda: case(drum(), "right", root=40.0),
-    "three on a slope": lambda: case(ball(), start=30.0),
-    "three around a neck": lambda: case(bottle(), start=25.0),
-    "two": lambda: case(drum(), root=14.0),
+    "three on a flat top": lambda: case(drum(), start=25.0),
+    "three to the right": lambda: case(drum(), "right", start=25.0),
+    "three on a slope": lambda: case(ball(), start=38.0),
+    "three around a neck": lambda: case(bottle(), start=40.0),
+    "two": lambda: case(drum(), start=16.0),
     "one on a ball": lambda: case(ball(), root=8.0),
     "one thin to the right": lambda: case(ball(30.0), "right", root=8.0, D=8.0),
     "one from beyond the axis": lambda: case(ball(), root=24.0, back=18.0),

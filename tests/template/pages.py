@@ -71,6 +71,14 @@ def read(data: bytes) -> list[Page]:
     return [read_page(objects, objects[key]) for key in re.findall(rb"(\d+) 0 R", kids)]
 
 
+def read_text(data: bytes) -> str:
+    """Operators of a file of one page."""
+    objects = dict(re.findall(rb"(\d+) 0 obj\b(.*?)endobj", data, re.DOTALL))
+    (content,) = (body for body in objects.values() if b"/FlateDecode" in body)
+    coded = re.search(rb"stream\n(.*?)endstream", content, re.DOTALL).group(1).strip()
+    return zlib.decompress(base64.a85decode(coded.removesuffix(b"~>"))).decode("latin-1")
+
+
 def read_page(objects, body) -> Page:
     box = [float(n) for n in re.search(rb"/MediaBox \[(.*?)\]", body).group(1).split()]
     assert box[:2] == [0, 0]

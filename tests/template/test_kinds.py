@@ -121,7 +121,8 @@ def test_the_kerf_leaves_the_piece_its_size(build, kind):
     kerf = 0.3
     sheet, plain = build_sheet(build(), Wish(kind, kerf)), build_sheet(build(), Wish(kind))
     assert sheet.slits == plain.slits
-    (contour,), cuts = (sheet.drawing.layers[k].lines for k in (0, 1))
+    drawn = {layer.name: layer.lines for layer in sheet.drawing.layers}
+    (contour,), cuts = drawn["CUT_OUTER"], drawn["CUT_INNER"]
     left = Polygon(contour.points).buffer(-kerf / 2, join_style="mitre", mitre_limit=20.0)
     assert left.hausdorff_distance(Polygon(plain.outline)) < 1e-6
     assert len(cuts) == len(sheet.slits)
@@ -163,7 +164,7 @@ def test_each_kind_says_what_it_is():
     for kind, words in {
         "gauze": ("Cut template: bulb.png", "weld end edge here", "Turn 2", "Roll this way"),
         "sleeve": ("Sleeve template: bulb.png", "One layer where the design has 2"),
-        "strip": ("Marking strip: bulb.png", "Prick through", "Roll gauze of 103 x 130.4 mm twice"),
+        "strip": ("Marking strip: bulb.png", "Prick through", "Roll gauze of 123 x 130.4 mm twice"),
     }.items():
         text = said(bulb(), Wish(kind))
         assert all(word in text for word in words)

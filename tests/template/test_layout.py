@@ -47,16 +47,29 @@ def test_slits_lie_inside_the_outline(build, wish):
 
 
 @pytest.mark.parametrize("build", DESIGNS)
-def test_outline_is_the_sheet_with_a_notch_in_the_root(build):
+def test_outline_is_tube_and_clamp_with_a_notch_at_the_clamps_edge(build):
     design = build()
     sheet = build_sheet(design)
     length, roll = sheet.size_mm
-    np.testing.assert_allclose(np.ptp(sheet.outline, axis=0), [length, roll], atol=1e-9)
-    notch = box(0, 0, length, roll).difference(Polygon(sheet.outline))
-    first = design.joints[0]
-    assert 2 < notch.area < 10
-    assert notch.bounds[1] == 0
-    assert 0 < notch.bounds[0] < notch.bounds[2] < first.centre_mm - first.openF_mm / 2
+    assert length == design.tube.length_mm + design.clamp.length_mm
+    np.testing.assert_allclose(sheet.outline.min(axis=0), [-design.clamp.length_mm, 0])
+    np.testing.assert_allclose(sheet.outline.max(axis=0), [design.tube.length_mm, roll])
+    notch = box(*sheet.outline.min(axis=0), *sheet.outline.max(axis=0)).difference(
+        Polygon(sheet.outline)
+    )
+    assert notch.area == pytest.approx(4.5)
+    assert notch.bounds == pytest.approx((-3, 0, 0, 3))  # its straight side is x = 0
+
+
+@of_all_kinds
+@pytest.mark.parametrize("build", DESIGNS)
+def test_the_clamps_edge_is_marked_from_the_notch_to_the_end_edge(build, wish):
+    sheet = build_sheet(build(), wish)
+    marks = [x.points for x in sheet.drawing.drawn if x.layer == "MARK" and len(x.points) == 2]
+    edge = [p[:, 1] for p in marks if np.all(p[:, 0] == 0.0) and p.min() > 0.0 - 1e-9]
+    inside = [y for y in edge if y.min() > 0 and y.max() < sheet.outline[:, 1].max()]
+    assert sum(np.ptp(y) for y in inside) > sheet.outline[:, 1].max() - 7.0
+    assert "x = 0: edge of the clamp" in {text.text for text in sheet.drawing.texts}
 
 
 @of_all_kinds
@@ -67,7 +80,8 @@ def test_lettering_stands_clear(build, wish):
     boxes = [box(*text.box) for text in sheet.drawing.texts]
     assert [(a, b) for a, b in combinations(boxes, 2) if a.intersects(b)] == []
     others = [LineString(line.points) for line in sheet.drawing.drawn if len(line.points) < 10]
-    cuts = [line.points for layer in sheet.drawing.layers[:2] for line in layer.lines]
+    named = [layer for layer in sheet.drawing.layers if layer.name.startswith("CUT")]
+    cuts = [line.points for layer in named for line in layer.lines]
     others += [LineString(np.vstack([line, line[:1]])) for line in cuts]
     tree = STRtree(others)
     assert tree.query([b.buffer(0.2) for b in boxes], predicate="intersects").size == 0

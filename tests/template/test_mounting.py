@@ -76,10 +76,10 @@ def test_lettering_stands_clear(name):
 
 @every_case
 def test_the_side_view_clamp_stands_at_the_base(name):
-    """It runs from the base along the heading, up to the first cut, as wide as the tube."""
+    """It runs back from the base against the heading, as long as the clamp, as wide as the tube."""
     design = made(name)[0]
     pose = design.base_pose
-    length = design.tube.root_mm - 4.0
+    length = -design.clamp.length_mm
     way = np.array([np.cos(np.radians(pose.heading_deg)), np.sin(np.radians(pose.heading_deg))])
     # The object lies to the left of the way on the left side, so the tube to its right.
     out = np.array([way[1], -way[0]]) * (1.0 if design.source.side == "left" else -1.0)
@@ -96,11 +96,11 @@ def test_a_drawn_line_stands_for_the_object():
     grey = [LineString(p) for p in on(drawing, "REF", closed=False)]
     assert max(p.length for p in grey if line.buffer(0.05).covers(p)) > 0.95 * line.length
     assert "body of revolution" not in said(drawing)
-    assert "0: middle of the tube's clamped end" in said(drawing)
+    assert "0: middle of the tube's open end" in said(drawing)
     x, y = profile.points[0]
     assert f"base point: x {x:.1f}, y {y:.1f}" in said(drawing)
     clamps = plan(drawing)[2]
-    assert np.ptp(clamps[0], axis=0) == pytest.approx([6.0, 20.0])  # true size, steep as it is
+    assert np.ptp(clamps[0], axis=0) == pytest.approx([20.0, 20.0])  # true size, steep as it is
 
 
 def test_outline_target_and_tubes_are_mounting_drawing():
@@ -111,17 +111,17 @@ def test_outline_target_and_tubes_are_mounting_drawing():
     )
     paths = [LineString(line.points) for line in drawing.drawn if line.layer in ("REF", "NOTE")]
     for shape, least in ((bent.facing, 0.9), (bent.far, 0.9), (straight.far, 0.5)):
-        held = LineString(shape[straight.along >= design.tube.root_mm])
-        cover = held.buffer(0.05)
-        assert sum(p.intersection(cover).length for p in paths) > least * held.length
+        free = LineString(shape)
+        cover = free.buffer(0.05)
+        assert sum(p.intersection(cover).length for p in paths) > least * free.length
     target = LineString(profile.points).buffer(0.05)
     notes = [LineString(line.points) for line in drawing.drawn if line.layer == "NOTE"]
-    assert max(p.intersection(target).length for p in notes) > 0.95 * profile.length_mm
+    assert sum(p.intersection(target).length for p in notes) > 0.95 * profile.length_mm
 
 
 def test_left_and_right_mirror_each_other():
     left, right = (
-        plan(mounting_drawing(*case(drum(), side, root=40.0)))[1] for side in ("left", "right")
+        plan(mounting_drawing(*case(drum(), side, start=25.0)))[1] for side in ("left", "right")
     )
     mirrored = sorted(tuple(np.round(m * [-1, 1], 2)) for m, _ in left)
     assert mirrored == sorted(tuple(np.round(m, 2)) for m, _ in right)
@@ -144,7 +144,9 @@ def test_title_says_what_is_wrong():
 
 
 def test_a_tube_that_bends_into_the_palm_is_warned_of():
-    assert "runs into the palm" in said(mounting_drawing(*case(wave(), closed=False, away=True)))
+    assert "runs into the palm" in said(
+        mounting_drawing(*case(wave(), closed=False, away=True, root=5.0))
+    )
     assert "runs into the palm" not in said(drawing_of("one on a line"))
 
 
@@ -153,13 +155,7 @@ def test_the_bar_is_100_mm():
     assert any(np.ptp(p, axis=0) == pytest.approx([100.0, 0.0]) for p in bars)
 
 
-def test_a_root_without_room_is_refused():
-    design, *rest = made("two")
-    tube = replace(design.tube, root_mm=4.0)
-    with pytest.raises(ValueError, match="no root"):
-        mounting_drawing(replace(design, tube=tube), *rest)
-
-
+@pytest.mark.slow
 @settings(max_examples=5, deadline=None)
 @given(
     side=st.sampled_from(["left", "right"]),

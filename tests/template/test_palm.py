@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from itertools import combinations
 
 import numpy as np
@@ -12,6 +13,7 @@ from profiletool.template.fingers import clear_radius
 from profiletool.template.mounting import mounting_drawing
 from tests.template.mounts import (
     ball,
+    bottle,
     case,
     drawing_of,
     drum,
@@ -54,12 +56,11 @@ def test_three_fingers_on_a_flat_top_by_hand(name, first):
     drawing = drawing_of(name)
     palm, holes, clamps = plan(drawing)
     centre = Polygon(palm).centroid
-    # Strips of 20 mm are 1 mm apart from 10 / sqrt(3) + 1 / sqrt(3) on; 36 mm are held.
-    base = abs(made(name)[0].base_pose.x_mm)
-    cut = np.ceil(10 * (11 / np.sqrt(3) - base)) / 10
-    assert f"Cut each root {cut:g} mm shorter" in said(drawing)
-    assert f"clamp length left {36 - cut:g} mm" in said(drawing)
-    inner, outer = base + cut, base + 36.0
+    # Strips of 20 mm are 1 mm apart from 11 / sqrt(3) on; 20 mm are held, up to the base.
+    outer = abs(made(name)[0].base_pose.x_mm)
+    inner = outer - 20.0
+    assert inner > 11 / np.sqrt(3)
+    assert f"Base points (x = 0): r = {outer:.1f}" in said(drawing)
     middle = (inner + outer) / 2
     for k in range(3):
         expected = rotated([(middle, 16.0), (middle, -16.0)], first + 120 * k)
@@ -82,18 +83,18 @@ def test_three_fingers_on_a_slope_are_seen_from_above():
     """A level palm over the highest point; clamps projected; screws through its middle."""
     pose = made("three on a slope")[0].base_pose
     slope = np.radians(pose.heading_deg - 180.0)
-    assert 35 < np.degrees(slope) < 45
+    assert 45 < np.degrees(slope) < 55
     drawing = drawing_of("three on a slope")
     palm, holes, clamps = plan(drawing)
     centre = Polygon(palm).centroid
-    inner = -pose.x_mm
-    outer = inner + 6.0 * np.cos(slope) + 20.0 * np.sin(slope)
+    inner = -pose.x_mm - 20.0 * np.cos(slope)
+    outer = -pose.x_mm + 20.0 * np.sin(slope)
     found = np.sort(centre.x - clamps[0][:, 0])
     np.testing.assert_allclose(found[[0, -1]], [inner, outer], atol=0.01)
     np.testing.assert_allclose(np.ptp(clamps[0][:, 1]), 20.0, atol=1e-6)
     assert centre.x - holes[0][0][0] == pytest.approx((inner + outer) / 2, abs=0.01)
     plates = [p for p in on(drawing, "REF") if len(p) == 4]
-    top = max(pose.y_mm + 20 * np.cos(slope), pose.y_mm)
+    top = pose.y_mm + 20 * np.cos(slope) + 20 * np.sin(slope)
     assert min(p[:, 1].min() for p in plates) == pytest.approx(top, abs=1e-6)
     assert f"inclined {np.degrees(slope):.1f}° to the palm" in said(drawing)
     assert f"{np.degrees(slope):.1f}° to the horizontal (heading" in said(drawing)
@@ -113,32 +114,37 @@ def test_an_object_that_reaches_through_has_an_opening():
 
 
 def test_fingers_that_cannot_meet_are_said_so():
-    """Held are 4, 10 and 14 mm, from the axis on; three lose 6.3 to 6.4 mm, two half a mm.
-
-    Saddles of three need 13.3 mm from the axis and 2 mm of clamp beyond.
-    """
+    """Three need 6.4 mm from the axis to the open end, two half a mm; the screws of three 13.3."""
     text = said(drawing_of("one on a ball"))
-    assert "each clamp of 4 mm would have to lose 6.3 mm" in text
-    assert "One is laid out" in text
+    assert "their tubes would meet: they begin 19.9 mm beyond" in text
+    assert "one is laid out" in text
     text = said(drawing_of("two"))
-    assert "each clamp of 10 mm would have to lose 6.3 mm" in text
-    assert "Two opposite ones are laid out" in text
-    assert "Cut each root 0.5 mm shorter" in text
-    text = said(mounting_drawing(*case(drum(), root=18.0)))
-    assert "their screws would meet. Two opposite ones" in text
-    assert "cannot share" not in said(mounting_drawing(*case(drum(), root=20.0)))
+    assert "their tubes would meet: they begin 1.9" in text
+    assert "mm from the object's axis, and need 6.4 mm before it; two opposite ones" in text
+    assert "cannot share" not in said(mounting_drawing(*case(drum(), start=20.0)))
     text = said(mounting_drawing(*case(lollipop(15.0), start=62.0)))
     assert "too wide above them" in text
-    assert "One is laid out" in text
-    text = said(mounting_drawing(*case(lollipop(4.0), start=62.0)))
-    assert "closer than the tubes are wide" in text
+    assert "one is laid out" in text
     assert "cannot share" not in said(drawing_of("one beside a handle"))
 
 
-def test_a_clamp_that_is_short_is_no_reason_to_stand_alone():
-    drawing = mounting_drawing(*case(ball(), start=20.0, root=7.0))
+@pytest.mark.parametrize(
+    ("body", "side"),
+    [(ball(), "left"), (ball(30.0), "right"), (drum(), "left"), (bottle(), "left")],
+)
+def test_the_start_that_is_said_has_room_for_three_fingers(body, side):
+    text = said(mounting_drawing(*case(body, side)))
+    (start,) = re.findall(r"three find room with --from (\d+)", text)
+    drawing = mounting_drawing(*case(body, side, start=float(start)))
     assert len(plan(drawing)[2]) == 3
-    assert "clamp is short: 3 mm" in said(drawing)
+    assert "cannot share" not in said(drawing)
+    before = mounting_drawing(*case(body, side, start=0.6 * float(start)))
+    assert len(plan(before)[2]) < 3
+
+
+def test_no_start_has_room_for_three_thick_fingers():
+    text = said(mounting_drawing(*case(ball(24.0), D=24.0)))
+    assert "no start farther down has room for three of this tube (--diameter)" in text
 
 
 @pytest.mark.parametrize("fingers", [2, 3, 5])
@@ -152,27 +158,27 @@ def test_strips_clear_each_other_from_the_clear_radius_on(fingers):
 def test_a_handle_leaves_one_finger_on_a_rectangle():
     drawing = drawing_of("one beside a handle")
     palm, holes, clamps = plan(drawing)
-    assert np.ptp(palm, axis=0) == pytest.approx([26 + 12, 2 * np.ceil(16 + 1.6 + 6)])
+    assert np.ptp(palm, axis=0) == pytest.approx([20 + 12, 2 * np.ceil(16 + 1.6 + 6)])
     assert len(clamps) == 1
     end = made("one beside a handle")[0].base_pose.x_mm
-    assert clamps[0][:, 0].max() == pytest.approx(end)
-    assert [m[0] for m, _ in holes] == pytest.approx([end - 13.0] * 2)
+    assert clamps[0][:, 0].min() == pytest.approx(end)
+    assert [m[0] for m, _ in holes] == pytest.approx([end + 10.0] * 2)
     assert "Not taken for a body of revolution" in said(drawing)
     assert "width 110.0" in said(drawing)
     assert "height 90.0" in said(drawing)
 
 
 def test_places_on_one_finger_s_palm_are_measured_from_the_axis():
-    """Held from 18 mm beyond the axis to 2 mm on this side of it."""
+    """Held from 38 to 18 mm beyond the axis."""
     drawing = drawing_of("one from beyond the axis")
     _, holes, (clamp,) = plan(drawing)
     pose = made("one from beyond the axis")[0].base_pose
     assert 17.5 < pose.x_mm < 18.0
     # On the palm's face, where the far line begins.
     end = pose.x_mm + 20.0 * np.sin(np.radians(pose.heading_deg))
-    np.testing.assert_allclose(np.sort(clamp[:, 0])[[0, -1]], [end - 20, end], atol=0.01)
-    assert [m[0] for m, _ in holes] == pytest.approx([end - 10.0] * 2, abs=0.01)
-    assert f"1:  x {end - 10:.1f},  y -16.0 2:  x {end - 10:.1f},  y 16.0" in said(drawing)
-    assert f"0 to screws {end - 10:.1f}" in said(drawing)
+    np.testing.assert_allclose(np.sort(clamp[:, 0])[[0, -1]], [end, end + 20], atol=0.01)
+    assert [m[0] for m, _ in holes] == pytest.approx([end + 10.0] * 2, abs=0.01)
+    assert f"1:  x {end + 10:.1f},  y -16.0 2:  x {end + 10:.1f},  y 16.0" in said(drawing)
+    assert f"0 to screws {end + 10:.1f}" in said(drawing)
     crosses = [p for p in on(drawing, "MARK", closed=False) if np.ptp(p[:, 0]) == 0.0]
     assert any(abs(p[0, 0]) < 0.02 and abs(np.ptp(p[:, 1]) - 8.0) < 0.1 for p in crosses)

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import re
+import shutil
+import subprocess
 import time
 
 import numpy as np
 import pytest
+from reportlab.pdfbase.pdfmetrics import stringWidth
 
 from profiletool.template.drawing import Drawing, Line, Text, polyline
 from profiletool.template.layout import build_sheet
@@ -28,6 +31,7 @@ from tests.template.pages import (
     piece,
     printed,
     read,
+    read_text,
     rectangle,
     sheet,
     spoken,
@@ -117,7 +121,8 @@ def test_every_point_of_the_piece_is_on_a_page(written):
     numbers = {kind: [k for k, other in enumerate(kinds) if other == kind] for kind in {*kinds}}
     like = {kind: (ks, np.array([lines[k].points for k in ks])) for kind, ks in numbers.items()}
     pages = [page for page in pages if any(layer_of(s) == "CUT_OUTER" for s in page.drawn)]
-    for page, window in zip(pages, windows_of(pages, lines[0].points), strict=True):
+    outline = next(line.points for line in lines if line.layer == "CUT_OUTER")
+    for page, window in zip(pages, windows_of(pages, outline), strict=True):
         for stroke in page.drawn:
             if layer_of(stroke) not in PIECE:
                 continue
@@ -301,3 +306,30 @@ def test_file_is_small():
 def test_nothing_drawn():
     with pytest.raises(ValueError, match="at least one"):
         write_pdf(Drawing("Empty", (), ()))
+
+
+@pytest.mark.skipif(shutil.which("pdftotext") is None, reason="needs poppler")
+def test_lettering_can_be_searched(tmp_path):
+    """As poppler reads it: every text of the sheet, none on a page that does not show it."""
+    sheet = build_sheet(bulb())
+    file = tmp_path / "template.pdf"
+    file.write_bytes(write_pdf(sheet.drawing, "letter", sheet.parts))
+    words = subprocess.run(
+        ["pdftotext", "-layout", file, "-"], capture_output=True, text=True, check=True
+    ).stdout
+    first, second, *_ = words.split("\f")
+    for said in ("x = 0: edge of the clamp", "Turn 2", "Closed end"):
+        assert said in first
+        assert said not in second
+    for said in ("Cut template: bulb.png", "Cut the blue lines only", "seam 270°", "100 mm"):
+        assert said in second
+
+
+def test_lettering_that_is_searched_lies_on_its_strokes():
+    drawing = Drawing("", (), (Text("NOTE", "Weld 7°", 10.0, 20.0, 5.0),))
+    data = read_text(write_pdf(drawing))
+    x0, _, x1, _ = drawing.texts[0].box
+    size = 5.0 / 0.718  # Helvetica's capitals
+    (scale,) = re.findall(rf"/F1 {size:.6f} Tf \S+ TL 3 Tr ([\d.]+) Tz", data)
+    wide = stringWidth("Weld 7°", "Helvetica", size) * float(scale) / 100.0
+    assert wide == pytest.approx(x1 - x0, abs=0.01)

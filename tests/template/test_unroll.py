@@ -47,7 +47,7 @@ def test_phi_inverts_y(D, t, phi, turns):
 
 
 def test_sheet_size():
-    assert sheet_size(bulb().tube, bulb().gauze) == pytest.approx((103.0, 130.376095), abs=1e-6)
+    assert sheet_size(bulb()) == pytest.approx((123.0, 130.376095), abs=1e-6)
 
 
 @pytest.mark.parametrize("build", DESIGNS)

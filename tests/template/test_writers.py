@@ -42,7 +42,7 @@ def test_dxf_reads_back(build):
     outline = np.array(
         [p[:2] for e in entities if e.dxf.layer == "CUT_OUTER" for p in e.get_points()]
     )
-    np.testing.assert_allclose(outline.min(axis=0), [0, 0], atol=1e-9)
+    np.testing.assert_allclose(outline.min(axis=0), [-20, 0], atol=1e-9)
     np.testing.assert_allclose(outline.max(axis=0), [build().tube.length_mm, 130.38], atol=0.01)
     cuts = [[p[:2] for p in e.get_points()] for e in entities if e.dxf.layer == "CUT_INNER"]
     expected = [[(s.x_mm, s.y_start_mm), (s.x_mm, s.y_end_mm)] for s in sheet.slits]
@@ -93,7 +93,7 @@ def test_svg_shows_the_same_lines(build):
         SVG + tag for tag in ("svg", "title", "g", "polygon", "polyline")
     }
     groups = root.findall(f"{SVG}g")
-    assert [g.get("id") for g in groups] == list(COLOURS)
+    assert [g.get("id") for g in groups] == [layer.name for layer in sheet.drawing.layers]
     x0, _, _, y1 = sheet.drawing.bounds
     for group, layer in zip(groups, sheet.drawing.layers, strict=True):
         assert len(group) == len(layer.lines)
@@ -128,6 +128,7 @@ def test_golden_files_reread():
     assert len(root.find(f"{SVG}g[@id='CUT_INNER']")) == 2 * 19 + 3 * 5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "build",
     [short_tube, *(pytest.param(b, marks=pytest.mark.slow) for b in (bulb, skew, long_tube))],
@@ -145,3 +146,13 @@ def test_r12_holds_the_same_lines(build, caplog):
         points = [tuple(point)[:2] for point in entity.points()]
         np.testing.assert_allclose(points, line.points, atol=1e-6)
     assert caplog.records == []
+
+
+def test_the_outline_is_cut_last():
+    """A part that is cut loose moves, so marks and slits come before."""
+    drawing = build_sheet(bulb()).drawing
+    layers = [e.dxf.layer for e in read_back(write_dxf(drawing)).modelspace()]
+    groups = [g.get("id") for g in ElementTree.fromstring(write_svg(drawing)).findall(f"{SVG}g")]
+    for order in (layers, groups):
+        cut = order.index("CUT_OUTER")
+        assert not {"CUT_INNER", "MARK"} & set(order[cut:])

@@ -106,6 +106,7 @@ def test_more_pressure_to_first_order(
     assert found[0].rms_mm > 0.05
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("entry", [1, 2, 3])
 def test_of_what_every_joint_has_the_one_that_matters_most(
     entry: int, design: Design, profile: Profile, found: tuple[Sensitivity, ...]

@@ -12,6 +12,8 @@ from profiletool.image.find.masks import thickness
 from profiletool.image.sheet.parallax import (
     DISTANCE_SHARE,
     LARGEST_SHARE,
+    Camera,
+    Remaining,
     axis_height,
     remaining,
     shrinkage,
@@ -58,6 +60,7 @@ def measure(
     silhouette: Silhouette,
     camera_distance_mm: float | None = None,
     revolved: bool = True,
+    flat: bool = False,
 ) -> Measured:
     """Give an object's outline and scale at the height of its axis.
 
@@ -70,6 +73,8 @@ def measure(
         From the lens to the sheet, where it was measured; else the picture tells it.
     revolved : bool
         Whether the object may be a body of revolution; if not, its outline stays as it is seen.
+    flat : bool
+        Whether it is flat and lies on the sheet: its outline and the sheet's scale are its own.
 
     Raises
     ------
@@ -80,36 +85,44 @@ def measure(
     """
     k = made.picture.mm_per_px
     assert k is not None  # `rectify` always knows it
-    camera = made.camera
-    if camera_distance_mm is not None:
-        _check_distance(camera_distance_mm, camera.height_mm)
-        camera = replace(camera, height_mm=camera_distance_mm, height_share=DISTANCE_SHARE)
+    camera = _camera(made.camera, camera_distance_mm)
     foot, high = np.array(camera.foot_px), camera.height_mm
     contour = silhouette.contour_px
     size = np.ptp(contour, axis=0)
-    section = lying_section(contour * k, np.append(foot * k, high)) if revolved else None
-    t = axis_height(0.5 * thickness(contour) * k, high) if section is None else section.height_mm
+    around = revolved and not flat
+    section = lying_section(contour * k, np.append(foot * k, high)) if around else None
+    t = 0.0 if flat else axis_height(0.5 * thickness(contour) * k, high)
+    t = t if section is None else section.height_mm
     if t > LARGEST_SHARE * high:
         raise NoScale(
             f"a camera {high:.0f} mm above the sheet is too near for an object so thick; "
             "photograph it from farther off"
         )
+    near = shrinkage(t, high)
     if section is not None:
-        contour = foot + (section.points / k - foot) / shrinkage(t, high)
+        contour = foot + (section.points / k - foot) / near
     aside = float(np.hypot(*(contour.mean(axis=0) - foot))) * k
-    left = remaining(t, camera, aside, section is not None)
+    left = Remaining(0.0, 0.0) if flat else remaining(t, camera, aside, section is not None)
     edges = math.hypot(silhouette.noise_px, _EDGE_PX)
     noise = 2.0 * math.sqrt(2.0) * edges / float(size.min())
     measured = math.hypot(2.0 * made.error_share, left.distance, noise)
     share = math.hypot(measured, left.shape)
     return Measured(
         silhouette=replace(silhouette, contour_px=contour),
-        scale=Scale(k * shrinkage(t, high), "sheet", share),
+        scale=Scale(k * near, "sheet", share, None if flat else 2.0 * t, 1.0 / near - 1.0),
         height_mm=t,
         round=section is not None,
         measured_share=measured,
         shape_share=left.shape,
     )
+
+
+def _camera(seen: Camera, given_mm: float | None) -> Camera:
+    """Give the camera at the distance that was measured, else where the sheet shows it."""
+    if given_mm is None:
+        return seen
+    _check_distance(given_mm, seen.height_mm)
+    return replace(seen, height_mm=given_mm, height_share=DISTANCE_SHARE)
 
 
 def _check_distance(given_mm: float, seen_mm: float) -> None:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from profiletool.errors import NoObject, UnreadableInput
+from profiletool.errors import UnreadableInput
 from profiletool.records.units import FloatArray
 
 FLAT_MM = 0.01  # curves become polylines that stay this near
@@ -21,7 +21,6 @@ MAX_COORDINATE_MM = 1e5
 MAX_POINTS = 200_000
 MAX_MEETINGS = 1_000_000  # pairs of ends that lie together
 _EXACT_MM = 1e-4
-_ALIKE = 5.0  # a chain this many times as long as all others is the profile, the others are crumbs
 
 
 @dataclass(frozen=True)
@@ -70,11 +69,13 @@ def clean(points: FloatArray, closed: bool, gap: float = JOIN_MM) -> Polyline:
     return Polyline(points, closed)
 
 
-def join(chains: Iterable[Polyline]) -> list[Polyline]:
+def join(
+    chains: Iterable[Polyline], gaps: Sequence[float] = (_EXACT_MM, JOIN_MM)
+) -> list[Polyline]:
     """Join open chains end to end; a point where three or more meet ends them.
 
     Doubled chains count once. First the ends that coincide, then those within JOIN_MM, so that
-    curves drawn in pieces shorter than that do not fall apart.
+    curves drawn in pieces shorter than that do not fall apart; or ends within other ``gaps``, mm.
 
     Raises
     ------
@@ -82,39 +83,11 @@ def join(chains: Iterable[Polyline]) -> list[Polyline]:
         So many chains end in one place that it is no drawing of a profile.
     """
     pieces = _without_doubles(chains)
-    for gap in (_EXACT_MM, JOIN_MM):
+    for gap in gaps:
         whole = [piece for piece in pieces if piece.closed]
         loose = [piece for piece in pieces if not piece.closed and piece.length > gap]
         pieces = _without_doubles(whole + _linked(loose, gap))
     return pieces
-
-
-def choose(chains: Sequence[Polyline]) -> Polyline:
-    """Pick the profile: the longest closed chain around all others, or the one that stands out.
-
-    Raises
-    ------
-    NoObject
-        There is none, or there are several alike.
-    """
-    if not chains:
-        raise NoObject("nothing drawable; draw the profile as lines, arcs, polylines or splines")
-    closed = max((c for c in chains if c.closed), key=lambda c: c.length, default=None)
-    if closed is not None and all(_inside(c, closed) for c in chains):
-        return closed
-    ranked = sorted(chains, key=lambda c: c.length, reverse=True)
-    outside = [c for c in ranked[1:] if not (ranked[0].closed and _inside(c, ranked[0]))]
-    if outside and outside[0].length * _ALIKE > ranked[0].length:
-        raise NoObject(
-            f"several separate lines ({len(chains)}); keep one profile, close gaps wider than "
-            f"{JOIN_MM:g} mm and delete construction lines that touch it"
-        )
-    return ranked[0]
-
-
-def _inside(inner: Polyline, outer: Polyline) -> bool:
-    low, high = outer.box
-    return bool(np.all(inner.box[0] >= low - JOIN_MM) and np.all(inner.box[1] <= high + JOIN_MM))
 
 
 def _without_doubles(chains: Iterable[Polyline]) -> list[Polyline]:

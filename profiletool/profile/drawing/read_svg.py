@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from io import BytesIO
 from typing import Any
 from xml.etree import ElementTree
@@ -10,82 +12,144 @@ from xml.etree import ElementTree
 import numpy as np
 
 from profiletool.errors import NoObject, UnreadableInput
+from profiletool.profile.drawing import svg_tree
 from profiletool.profile.drawing.chain import (
     FLAT_MM,
     MAX_COORDINATE_MM,
     MAX_POINTS,
-    Polyline,
     clean,
     join,
 )
-from profiletool.profile.drawing.svg_tree import CSS_PX_PER_INCH, MM_PER_PX, prepare, safe_tree
+from profiletool.profile.drawing.drawn import FAR_TIMES, Drawn, placed
+from profiletool.profile.drawing.svg_page import CSS_PX_PER_INCH, MM_PER_PX, size_page
+from profiletool.profile.drawing.svg_seen import Piece, seen
+from profiletool.profile.drawing.svg_style import name_of
+from profiletool.profile.drawing.svg_text import parsed, safe_text
 from profiletool.records.units import FloatArray
 
+_LOST = ("mask", "clip path", "hidden layer")  # what is told of what is not drawn
 # What svgelements throws on values that it does not understand.
 _DAMAGE = (ValueError, TypeError, IndexError, KeyError, AttributeError, ArithmeticError)
 
 
-def read_svg(data: bytes) -> list[Polyline]:
+def read_svg(data: bytes, layer: str | None = None) -> Drawn:
     """Read the chains of a drawing.
 
     Parameters
     ----------
     data : bytes
-        SVG in UTF-8. Lengths without a unit are CSS pixels of 25.4/96 mm; width, height and
+        SVG, packed or not. Lengths without a unit are CSS pixels of 25.4/96 mm; width, height and
         viewBox scale as SVG says. No reference out of the file is followed.
+    layer : str or None
+        Label or id of a group to read alone.
 
     Returns
     -------
-    list of Polyline
-        In mm, y up, joined end to end; hidden shapes, markers, masks, symbols and a rectangle
-        that is the page itself are left out.
+    Drawn
+        Joined end to end; what is not painted, masks and the page itself are left out, clips
+        cut.
 
     Raises
     ------
     UnreadableInput
-        Not well-formed, a DOCTYPE or ENTITY declaration, values that are no numbers, references
-        in a circle, or too much of anything.
+        Not well-formed, declarations, values that are no numbers, references in a circle, or too
+        much of anything.
     NoObject
-        The page has no size.
+        The page has no size, or there is nothing but text and pictures.
+    UsageError
+        No such layer.
     """
     from svgelements import SVG
 
-    root = safe_tree(data)
-    prepare(root)
+    text = safe_text(data)
+    root = _root(text)
+    unit, factor = size_page(root, text)
     try:
+        plain = svg_tree.plain_tree(root, layer)
         drawing = SVG.parse(
-            BytesIO(ElementTree.tostring(root)), reify=False, ppi=CSS_PX_PER_INCH, on_error="raise"
-        )
-        if not isinstance(drawing, SVG):
-            raise UnreadableInput("holds no <svg> element; export it again as plain SVG")
+            BytesIO(ElementTree.tostring(plain.root)),
+            reify=False, ppi=CSS_PX_PER_INCH, on_error="raise",
+        )  # fmt: skip
         if not drawing.width or not drawing.height:
             raise NoObject("the page has no width or no height; set both in mm")
         with np.errstate(all="ignore"):  # absurd numbers: the outcome is checked
-            pieces = list(_pieces(drawing))
+            pieces, regions = _pieces(drawing, MM_PER_PX * factor)
     except _DAMAGE as error:
         reason = f" ({error})" if str(error) else ""
         raise UnreadableInput(f"values that SVG does not know{reason}; export again") from None
-    return join(_without_page(pieces, drawing.width, drawing.height))
+    if not pieces and any(plain.left.values()):
+        raise NoObject(_only(plain.left))
+    page = _page(drawing.width, drawing.height, MM_PER_PX * factor)
+    near, moved = placed([piece.points for piece in pieces])
+    whole = [replace(piece, points=p) for piece, p in zip(pieces, near, strict=True)]
+    drawn, notes = seen(whole, None if moved else page, {} if moved else regions)
+    chains = [clean(piece.points, piece.shut) for piece in drawn]
+    lost = [
+        f"left out of the drawing: {plain.left[what]} {what}" for what in _LOST if plain.left[what]
+    ]
+    return Drawn(join(chains), unit, (*notes, *moved, *lost))
 
 
-def _pieces(drawing: Any) -> Iterator[tuple[Polyline, bool]]:
-    """Yield the chains and whether each was drawn as a rectangle."""
-    from svgelements import Rect, Shape
+def _root(text: str) -> ElementTree.Element:
+    if text.count("<") > 2 * svg_tree.MAX_ELEMENTS:
+        raise UnreadableInput(f"more than {svg_tree.MAX_ELEMENTS} elements; simplify the drawing")
+    root = parsed(text)
+    name = root.tag.rpartition("}")[2]
+    if name != "svg":
+        raise UnreadableInput(f"holds <{name[:20]}> instead of <svg>; export it again as SVG")
+    if not name_of(root):
+        raise UnreadableInput("holds no <svg> element; export it again as plain SVG")
+    return root
 
+
+def _only(left: Counter[str]) -> str:
+    """Say what a drawing holds that has no lines."""
+    if left["image"]:
+        return "nothing drawable, only a picture: trace it, or give the picture itself"
+    if left["text"]:
+        return "nothing drawable, only text: turn it into paths"
+    return "nothing drawable that is not hidden: show it, or choose a `layer`"
+
+
+def _page(width: Any, height: Any, mm_per_px: float) -> FloatArray | None:
+    if not (isinstance(width, float) and isinstance(height, float)):  # a share of who knows what
+        return None
+    return np.array([[0.0, -height], [width, 0.0]]) * mm_per_px
+
+
+def _pieces(drawing: Any, mm_per_px: float) -> tuple[list[Piece], dict[str, list[Piece]]]:
+    """Give the runs of all shapes, and by its number the regions of every clip."""
+    from svgelements import Shape
+
+    pieces: list[Piece] = []
+    regions: defaultdict[str, list[Piece]] = defaultdict(list)
     left = MAX_POINTS
     for shape in drawing.elements():
-        if not isinstance(shape, Shape) or shape.values.get("visibility") in ("hidden", "collapse"):
+        if not isinstance(shape, Shape):
             continue
-        m = shape.transform
-        matrix = MM_PER_PX * np.array([[m.a, m.c], [m.b, m.d]]) * [[1], [-1]]
-        offset = MM_PER_PX * np.array([m.e, -m.f])
+        m, values = shape.transform, shape.values
+        matrix = mm_per_px * np.array([[m.a, m.c], [m.b, m.d]]) * [[1], [-1]]
+        offset = mm_per_px * np.array([m.e, -m.f])
         scale = float(np.linalg.norm(matrix, 2)) if np.all(np.isfinite(matrix)) else np.inf
         for points, closed in _subpaths(shape.segments(transformed=False), scale):
             left -= len(points)
             if left <= 0:
                 raise UnreadableInput(f"more than {MAX_POINTS} points; simplify the drawing")
-            if len(points) > 1:
-                yield clean(points @ matrix.T + offset, closed), isinstance(shape, Rect)
+            if len(points) < 2:
+                continue
+            placed_mm = points @ matrix.T + offset
+            if not (np.abs(placed_mm) <= FAR_TIMES * MAX_COORDINATE_MM).all():
+                raise UnreadableInput(
+                    f"coordinates beyond {MAX_COORDINATE_MM:g} mm or not finite; check its size"
+                )
+            piece = Piece(
+                placed_mm, closed, str(values.get("inside")),
+                str(values.get("line")), values.get("filled") == "stated",
+                tuple(str(values.get("clips", "")).split()),
+            )  # fmt: skip
+            clipping = values.get("clipping")
+            (regions[str(clipping)] if clipping else pieces).append(piece)
+    return pieces, regions
 
 
 def _subpaths(segments: Iterable[Any], scale: float) -> Iterator[tuple[FloatArray, bool]]:
@@ -159,16 +223,3 @@ def _bounded(size_mm: float) -> float:
     if not size_mm <= 4 * MAX_COORDINATE_MM:
         raise UnreadableInput(f"coordinates beyond {MAX_COORDINATE_MM:g} mm; check units and scale")
     return max(float(size_mm), 1e-9)
-
-
-def _without_page(pieces: list[tuple[Polyline, bool]], width: Any, height: Any) -> list[Polyline]:
-    """Leave out rectangles that cover the page (px), unless there is nothing else."""
-    if not (isinstance(width, float) and isinstance(height, float)):  # a share of who knows what
-        return [chain for chain, _ in pieces]
-    page = np.array([[0.0, -height], [width, 0.0]]) * MM_PER_PX
-    drawn = [
-        chain
-        for chain, is_rect in pieces
-        if not (is_rect and np.allclose(chain.box, page, rtol=0, atol=0.1))
-    ]
-    return drawn or [chain for chain, _ in pieces]

@@ -1,174 +1,283 @@
-"""The XML of a drawing: checked before anything is drawn, and pruned to what is drawn."""
+"""Plain tree of all that an SVG draws: groups and shapes with their transforms and paint."""
 
 from __future__ import annotations
 
 import re
-from collections import defaultdict
-from xml.etree import ElementTree
+from collections import Counter, defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from xml.etree.ElementTree import Element, SubElement
 
-from profiletool.errors import UnreadableInput
-from profiletool.records.units import MM_PER_INCH
+from profiletool.errors import UnreadableInput, UsageError
+from profiletool.profile.drawing.svg_page import LENGTH, NUMBER, px_of, view_box, viewport
+from profiletool.profile.drawing.svg_style import INHERITED, Sheet, name_of, paint, share
 
-CSS_PX_PER_INCH = 96.0
-MM_PER_PX = MM_PER_INCH / CSS_PX_PER_INCH
-_PX_PER = {"": 1.0, "px": 1.0, "in": 96.0, "pt": 96 / 72, "pc": 16.0}
-_PX_PER |= {"mm": 1 / MM_PER_PX, "cm": 10 / MM_PER_PX, "Q": 0.25 / MM_PER_PX}
 MAX_ELEMENTS = 6_000
-MAX_TRANSFORMS = 2_000_000  # characters, counted anew for every element that they act on
+MAX_TRANSFORMS = 2_000_000  # characters, counted anew for every shape that they act on
 MAX_NUMBERS = 60_000  # and letters, in all paths together, counted anew for every <use>
 MAX_DEPTH = 100
 MAX_ATTRIBUTE = 1_000  # characters; longer ones make svgelements crawl
-MAX_STYLE = 20_000  # characters in all <style> together
 
 _SHAPES = ("path", "line", "polyline", "polygon", "rect", "circle", "ellipse")
-# Their shapes are not drawn where they stand, or not at all.
-_NOT_DRAWN = ("marker", "mask", "symbol", "filter", "metadata", "foreignObject", "image", "text")
+_GROUPS = ("g", "a", "switch", "svg")
 _XLINK = "{http://www.w3.org/1999/xlink}href"
-_DECLARATION = re.compile(rb"<!(?:DOCTYPE|ENTITY)", re.IGNORECASE)
-_NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
-_NUMBERS = re.compile(_NUMBER)
-_LENGTH = re.compile(rf"\s*({_NUMBER})\s*(px|mm|cm|in|pt|pc|Q|%|)\s*")
+_LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
 _LENGTHS = ("x", "y", "x1", "y1", "x2", "y2", "cx", "cy", "r", "rx", "ry", "width", "height")
 _LONG = ("d", "points")
-# The other attributes change nothing in where lines go, and every child would inherit them.
-_MEANT = (
-    *_LENGTHS, "d", "points", "href", "id", "class", "style", "transform", "viewBox",
-    "preserveAspectRatio", "display", "visibility",
-)  # fmt: skip
+_READ = ("style", "transform", "class", "id", "href", _XLINK, "viewBox", "preserveAspectRatio")
 # Nothing but numbers and what stands between them; possessive, so that it never looks back.
-_ALLOWED = {"d": re.compile(rf"(?:[MmZzLlHhVvCcSsQqTtAa,\s]|{_NUMBER})*+")}
-_ITEM = re.compile(rf"[A-DF-Za-df-z]|{_NUMBER}")
-_ALLOWED["points"] = re.compile(rf"(?:[,\s]|{_NUMBER})*+")
+_ALLOWED = {"d": re.compile(rf"(?:[MmZzLlHhVvCcSsQqTtAa,\s]|{NUMBER})*+")}
+_ALLOWED["points"] = re.compile(rf"(?:[,\s]|{NUMBER})*+")
+_ITEM = re.compile(rf"[A-DF-Za-df-z]|{NUMBER}")
+_URL = re.compile(r"url\(\s*[\"']?#([^\"')]+)[\"']?\s*\)")
+_NAMED = 8  # layers in a message
 
 
-def safe_tree(data: bytes) -> ElementTree.Element:
-    """Parse the XML: no declarations, one encoding, bounded size."""
-    if _DECLARATION.search(data):
-        raise UnreadableInput("holds a DOCTYPE or ENTITY declaration; delete it and save again")
-    if data.count(b"<") > 2 * MAX_ELEMENTS:
-        raise UnreadableInput(f"more than {MAX_ELEMENTS} elements; simplify the drawing")
-    try:
-        # In UTF-16 and the like a declaration could hide from the search above.
-        text = data.decode("utf-8-sig")
-        if "\0" in text:
-            raise ValueError("holds null characters")
-        return ElementTree.fromstring(text)
-    except (ElementTree.ParseError, ValueError) as error:
-        raise UnreadableInput(f"not well-formed XML in UTF-8 ({error}); export again") from None
+@dataclass(frozen=True)
+class _State:
+    """What holds where an element stands.
+
+    ``style`` is inherited; ``size`` (px) that of the viewport; ``path`` leads here; ``clips``
+    are numbers of what clips; ``transforms`` counts characters; ``within`` the layer asked for.
+    """
+
+    style: Mapping[str, str]
+    size: tuple[float, float]
+    path: tuple[Element, ...] = ()
+    clips: tuple[str, ...] = ()
+    transforms: int = 0
+    within: bool = True
 
 
-def _name(element: ElementTree.Element) -> str:
-    return element.tag.rpartition("}")[2]
+@dataclass
+class Plain:
+    """A plain tree, and what is not in it.
+
+    Attributes
+    ----------
+    root : Element
+        An <svg> of <g> and shapes. Of a shape, inside and line each are none, white or ink;
+        filled is stated or habit; clips are numbers with spaces between. What has a clipping is
+        no shape, but the region of the clip of that number.
+    left : Counter of str
+        Texts, pictures, masks and hidden layers that are not drawn.
+    """
+
+    root: Element
+    left: Counter[str] = field(default_factory=Counter)
 
 
-def prepare(root: ElementTree.Element) -> None:
-    """Check the tree, prune what is not drawn and complete the page's size."""
-    if _name(root) != "svg":
-        raise UnreadableInput(
-            f"holds <{_name(root)[:20]}> instead of <svg>; export it again as SVG"
+def plain_tree(root: Element, layer: str | None = None) -> Plain:
+    """Copy what is drawn: styles settled, <use>, symbols and nested pages in their places.
+
+    Raises
+    ------
+    UnreadableInput
+        Values that are no numbers, references in a circle, or too much of anything.
+    UsageError
+        No such layer.
+    """
+    copier = _Copier(root)
+    if layer is not None and not any(_is_layer(e, layer) for e in root.iter()):
+        names = [e.get(_LABEL, e.get("id", "")) for e in root if name_of(e) == "g"]
+        known = ", ".join(f"{name[:40]!a}" for name in [n for n in names if n][:_NAMED])
+        raise UsageError(f"no `layer` {layer[:40]!a}; there are {known or 'none'}")
+    copier.layer = layer
+    keys = ("width", "height", "viewBox", "preserveAspectRatio")
+    made = Element("svg", {key: root.get(key, "") for key in keys if root.get(key)})
+    made.set("xmlns", "http://www.w3.org/2000/svg")
+    box = view_box(root)
+    size = (box[2], box[3]) if box else tuple(float(root.get(key, "1000")) for key in keys[:2])
+    state = _State({}, (size[0], size[1]), within=layer is None or _is_layer(root, layer))
+    style = copier.sheet.of(root, ())
+    state = replace(state, style=_inherited({}, style), path=(root,))
+    copier.copy_all(list(root), made, state)
+    return Plain(made, copier.left)
+
+
+class _Copier:
+    """Copies elements one into another tree, and counts, so that it ends."""
+
+    def __init__(self, root: Element) -> None:
+        self.sheet = Sheet(root)
+        self.layer: str | None = None
+        self.left: Counter[str] = Counter()
+        self.by_id: defaultdict[str, list[Element]] = defaultdict(list)
+        for element in root.iter():
+            if element.get("id"):
+                self.by_id[element.get("id", "")].append(element)
+        self.elements = self.numbers = self.transforms = self.clips = 0
+
+    def copy_all(self, elements: Sequence[Element], into: Element, above: _State) -> None:
+        """Copy elements and what is in them; symbols are drawn by <use> alone."""
+        for element in elements:
+            if name_of(element) != "symbol":
+                self.copy(element, into, above)
+
+    def copy(self, element: Element, into: Element, above: _State) -> None:
+        """Copy an element and what is in it."""
+        name = name_of(element)
+        if name in ("text", "image"):
+            self.left[name] += 1
+        if name not in (*_SHAPES, *_GROUPS, "use", "symbol"):
+            return
+        self._count(element, above)
+        style = self.sheet.of(element, above.path)
+        chosen = self.layer is not None and _is_layer(element, self.layer)
+        hidden = style.get("display") == "none" or share(style.get("opacity", "1")) == 0.0
+        if hidden and not chosen:
+            self.left["hidden layer"] += element.get(_LABEL) is not None
+            return
+        if style.get("mask", "none") != "none":
+            self.left["mask"] += 1
+        transform = style.get("transform", "") if element.get("transform") else ""
+        state = replace(
+            above,
+            style=_inherited(above.style, style),
+            path=(*above.path, element),
+            transforms=above.transforms + len(transform),
+            within=above.within or chosen,
         )
-    _check_expansion(root)
-    styles = 0
-    for element in list(root.iter()):
-        for child in list(element):
-            if _name(child) in _NOT_DRAWN:
-                element.remove(child)
-        _keep_what_is_meant(element)
-        styles += len(element.text or "") if _name(element) == "style" else 0
-        if _name(element) in _SHAPES:
-            _check_values(element)
-    if styles > MAX_STYLE:
-        raise UnreadableInput("an endless <style>; export it again as plain SVG")
-    _complete_size(root)
+        if name in _SHAPES and not state.within:
+            return
+        target = into
+        if transform or name not in _SHAPES:
+            target = SubElement(into, "g", {"transform": transform} if transform else {})
+        state = self._clipped(style.get("clip-path", ""), target, state)
+        if name in _SHAPES:
+            self._shape(element, target, state)
+        elif name == "use":
+            self._use(element, target, state)
+        else:
+            self._group(element, target, state)
 
-
-def _check_expansion(root: ElementTree.Element) -> None:
-    """Refuse <use> that multiplies without bound or refers to itself, and endless nesting."""
-    by_id: defaultdict[str, list[ElementTree.Element]] = defaultdict(list)
-    for element in root.iter():
-        if element.get("id"):
-            by_id[element.get("id", "")].append(element)
-    sizes: dict[ElementTree.Element, tuple[int, int, int]] = {}
-
-    def size(element: ElementTree.Element, depth: int) -> tuple[int, int, int]:
-        """Elements drawn, characters of the transforms that act on them, numbers in paths."""
-        if depth > MAX_DEPTH:
-            raise UnreadableInput("nested too deeply, or <use> in a circle; flatten the drawing")
-        if element not in sizes:
-            inside = list(element)
-            if _name(element) == "use":
-                inside += by_id[_href(element)[1:]]
-            below = [size(part, depth + 1) for part in inside]
-            count = 1 + sum(part[0] for part in below)
-            sizes[element] = (
-                count,
-                count * len(element.get("transform", "")) + sum(part[1] for part in below),
-                _numbers(element) + sum(part[2] for part in below),
+    def _count(self, element: Element, above: _State) -> None:
+        self.elements += 1
+        if self.elements > MAX_ELEMENTS:
+            raise UnreadableInput(
+                f"more than {MAX_ELEMENTS} elements, with what <use> makes; simplify the drawing"
             )
-        return sizes[element]
+        if len(above.path) > MAX_DEPTH:
+            raise UnreadableInput("nested too deeply, or <use> in a circle; flatten the drawing")
+        self.transforms += above.transforms + len(element.get("transform", ""))
+        if self.transforms > MAX_TRANSFORMS:
+            raise UnreadableInput("far too many transforms in each other; flatten the drawing")
+        for key in (*_READ, *_LENGTHS):
+            if len(element.get(key, "")) > MAX_ATTRIBUTE:
+                raise UnreadableInput(f"an endless {key[:20]!r}; export it again as plain SVG")
+        text = element.get("d", "") + element.get("points", "")
+        if len(text) > 40 * MAX_NUMBERS:  # not worth counting
+            self.numbers += MAX_NUMBERS
+        self.numbers += sum(1 for _ in _ITEM.finditer(text[: 40 * MAX_NUMBERS]))
+        if self.numbers > MAX_NUMBERS:
+            raise UnreadableInput(
+                f"more than {MAX_NUMBERS} numbers in its paths; simplify the drawing"
+            )
 
-    count, transforms, numbers = size(root, 0)
-    if count > MAX_ELEMENTS:
-        raise UnreadableInput(
-            f"more than {MAX_ELEMENTS} elements, with what <use> makes; simplify the drawing"
+    def _shape(self, element: Element, into: Element, state: _State) -> None:
+        _check_values(element)
+        style = state.style
+        if style.get("visibility") in ("hidden", "collapse"):
+            return
+        fill, stroke = (
+            paint(
+                style.get("color", "black") if style.get(key) == "currentColor"
+                else style.get(key, default),
+                style.get(f"{key}-opacity", "1"),
+            )
+            for key, default in (("fill", "black"), ("stroke", "none"))
+        )  # fmt: skip
+        if share(style.get("stroke-width", "1")) == 0.0:
+            stroke = "none"
+        kept = {key: element.get(key, "") for key in (*_LENGTHS, *_LONG) if element.get(key)}
+        kept |= {"inside": fill, "line": stroke, "clips": " ".join(state.clips)}
+        SubElement(
+            into, name_of(element), kept | {"filled": "stated" if "fill" in style else "habit"}
         )
-    if transforms > MAX_TRANSFORMS:
-        raise UnreadableInput("far too many transforms in each other; flatten the drawing")
-    if numbers > MAX_NUMBERS:
-        raise UnreadableInput(f"more than {MAX_NUMBERS} numbers in its paths; simplify the drawing")
+
+    def _group(self, element: Element, into: Element, state: _State) -> None:
+        if name_of(element) in ("svg", "symbol"):
+            x, y, *size = (
+                self._length(element, key, whole, default)
+                for key, whole, default in (
+                    ("x", state.size[0], 0.0), ("y", state.size[1], 0.0),
+                    ("width", state.size[0], state.size[0]),
+                    ("height", state.size[1], state.size[1]),
+                )
+            )  # fmt: skip
+            if min(size) <= 0.0:
+                return
+            transform, inner = viewport(element, size)
+            move = f"translate({x!r} {y!r})" if name_of(element) == "svg" else ""
+            into = SubElement(into, "g", {"transform": f"{move} {transform}"})
+            state = replace(state, size=inner, transforms=state.transforms + len(transform) + 40)
+        children = list(element)
+        if name_of(element) == "switch":
+            children = [c for c in children if name_of(c) not in ("", "foreignObject")][:1]
+        self.copy_all(children, into, state)
+
+    def _use(self, element: Element, into: Element, state: _State) -> None:
+        link = element.get("href", element.get(_XLINK, ""))
+        targets = self.by_id.get(link[1:], [])[:1] if link.startswith("#") else []
+        x, y = (self._length(element, key, s, 0.0) for key, s in zip("xy", state.size, strict=True))
+        if x or y:
+            into = SubElement(into, "g", {"transform": f"translate({x!r} {y!r})"})
+        for target in targets:
+            if name_of(target) in ("symbol", "svg"):
+                sizes = {key: element.get(key, "") for key in ("width", "height")}
+                own = Element(
+                    target.tag, {**target.attrib, **{k: v for k, v in sizes.items() if v}}
+                )
+                own.extend(list(target))
+                target = own
+            self.copy(target, into, state)
+
+    def _clipped(self, link: str, into: Element, state: _State) -> _State:
+        """Put the region of a clip beside what it clips."""
+        found = _URL.match(link)
+        regions = self.by_id.get(found[1], []) if found else []
+        regions = [region for region in regions if name_of(region) == "clipPath"][:1]
+        for region in regions:
+            if region.get("clipPathUnits") == "objectBoundingBox":
+                self.left["clip path"] += 1
+                continue
+            self.clips += 1
+            number = str(self.clips)
+            made = SubElement(into, "g", {"clipping": number})
+            if region.get("transform"):
+                made.set("transform", region.get("transform", ""))
+            inside = replace(
+                state, clips=(), style={"fill": "black"}, path=(*state.path, region), within=True
+            )
+            for child in region:
+                self.copy(child, made, inside)
+            state = replace(state, clips=(*state.clips, number))
+        return state
+
+    def _length(self, element: Element, key: str, whole: float, default: float) -> float:
+        found = px_of(element.get(key, ""), whole)
+        return default if found is None else found
 
 
-def _numbers(element: ElementTree.Element) -> int:
-    """Numbers and letters in a path: what it takes to read it."""
-    text = element.get("d", "") + element.get("points", "")
-    if len(text) > 40 * MAX_NUMBERS:  # not worth counting
-        return MAX_NUMBERS + 1
-    return sum(1 for _ in _ITEM.finditer(text))
+def _inherited(above: Mapping[str, str], own: Mapping[str, str]) -> dict[str, str]:
+    set_here = {k: v for k, v in own.items() if k in INHERITED and v != "inherit"}
+    return {**above, **set_here}
 
 
-def _href(element: ElementTree.Element) -> str:
-    link = element.get(_XLINK, "")
-    return element.get("href", link)
+def _is_layer(element: Element, layer: str) -> bool:
+    return layer in (element.get(_LABEL), element.get("id"), element.get("data-name"))
 
 
-def _keep_what_is_meant(element: ElementTree.Element) -> None:
-    for key, text in list(element.attrib.items()):
-        outward = key in ("href", _XLINK) and not text.startswith("#")
-        if outward or (key not in _MEANT and key != _XLINK):
-            del element.attrib[key]
-        elif len(text) > MAX_ATTRIBUTE and key not in _LONG:
-            raise UnreadableInput(f"an endless {key[:20]!r}; export it again as plain SVG")
-
-
-def _check_values(element: ElementTree.Element) -> None:
+def _check_values(element: Element) -> None:
     """Refuse what is no number where a shape has them."""
     for key, allowed in _ALLOWED.items():
-        text = element.get(key, "")
-        if not allowed.fullmatch(text):
-            raise UnreadableInput(f"<{_name(element)}> has a bad {key!r}; export the drawing again")
+        if not allowed.fullmatch(element.get(key, "")):
+            raise UnreadableInput(
+                f"<{name_of(element)}> has a bad {key!r}; export the drawing again"
+            )
     for key in _LENGTHS:
         text = element.get(key, "0")
-        if not _LENGTH.fullmatch(text) and text != "auto":
+        if not LENGTH.fullmatch(text) and text != "auto":
             raise UnreadableInput(
-                f"<{_name(element)}> has the length {text[:20]!a}; use numbers, mm or px"
+                f"<{name_of(element)}> has the length {text[:20]!a}; use numbers, mm or px"
             )
-
-
-def _complete_size(root: ElementTree.Element) -> None:
-    """Bring width and height to px; where one is missing, the viewBox's proportions give it."""
-    box = [float(n) for n in _NUMBERS.findall(root.get("viewBox", ""))]
-    for key in ("width", "height"):
-        given = _LENGTH.fullmatch(root.get(key, ""))
-        if given is None:
-            root.attrib.pop(key, None)  # "auto" and the like
-        elif given[2] != "%":
-            root.set(key, repr(float(given[1]) * _PX_PER[given[2]]))
-    if len(box) != 4 or min(box[2:]) <= 0:
-        return
-    for have, lack, ratio in (
-        ("width", "height", box[3] / box[2]),
-        ("height", "width", box[2] / box[3]),
-    ):
-        given = _LENGTH.fullmatch(root.get(have, ""))
-        if given and given[2] != "%" and root.get(lack) is None:
-            root.set(lack, repr(float(given[1]) * ratio))

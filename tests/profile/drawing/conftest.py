@@ -3,7 +3,10 @@
 import ezdxf
 import pytest
 
+from profiletool import find_subject
+from profiletool.api import request_for
 from profiletool.profile.drawing.load import load_vector
+from profiletool.subject.find import drawing_notes
 
 
 @pytest.fixture
@@ -28,3 +31,14 @@ def dxf(tmp_path):
         return load_vector(path)
 
     return through_file
+
+
+@pytest.fixture
+def notes_of():
+    """Notes on a drawing as a design would carry them."""
+
+    def notes(path, **options):
+        request = request_for(path, **options)
+        return list(drawing_notes(request, find_subject(request)))
+
+    return notes

@@ -11,7 +11,10 @@ def test_csv_ends_within_the_tolerance_are_one(load):
     found = load("a.csv", "0,0\n10,0\n10,10\n0,0.04\n")
     assert found.closed
     assert found.points.tolist() == [[0, 0.02], [10, 0], [10, 10]]
-    assert not load("a.csv", "0,0\n10,0\n10,10\n0,0.06\n").closed
+    assert not load("a.csv", "0,0\n10,0\n10,10\n0,0.4\n").closed
+    near = load("a.csv", "0,0\n10,0\n10,10\n0,0.06\n")
+    assert near.closed
+    assert near.notes == ("the outline's ends are 0.06 mm apart at (0.0, 0.0): it was closed",)
 
 
 @pytest.mark.parametrize(

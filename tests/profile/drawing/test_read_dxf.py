@@ -110,18 +110,12 @@ def three_in_one_place(msp, _):
         msp.add_line((0, 0), end)
 
 
-def block_alone(msp, document):
-    document.blocks.new("A").add_circle((0, 0), 5)
-    msp.add_blockref("A", (0, 0))
-
-
 @pytest.mark.parametrize(
     ("draw", "words"),
     [
         (two_circles, "several separate lines (2)"),
         (wide_gap, "several separate lines (2)"),
         (three_in_one_place, "several separate lines (3)"),
-        (block_alone, "explode"),
         (lambda msp, _: msp.add_text("nothing"), "nothing drawable"),
         (
             lambda msp, _: msp.add_lwpolyline([(0, 0), (9, 9), (9, 0), (0, 9)], close=True),
