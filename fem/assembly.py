@@ -162,6 +162,14 @@ class System:
         energy, volume = ours.energy + theirs.energy, ours.volume + theirs.volume + cap
         return Forces(internal, gradient, energy, volume, least)
 
+    def clamp(self, x: FloatArray, pressure: float) -> FloatArray:
+        """Force of the clamp on the tube (or on half of it) at x under a pressure: (3,) N."""
+        self._both(lambda part: part.evaluate(x, 0.0, None), alone=True)
+        held: FloatArray = sum(
+            part.sums.internal[0] - pressure * part.sums.gradient[0] for part in self._parts
+        )[: self.mesh.ring].sum(axis=0)
+        return held
+
     def compliance(
         self, x: FloatArray, layers: IntArray, around: IntArray, units: FloatArray
     ) -> FloatArray:

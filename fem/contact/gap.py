@@ -7,8 +7,9 @@ from typing import Protocol
 
 import numpy as np
 
-from fem.arrays import FloatArray
+from fem.arrays import BoolArray, FloatArray
 
+NEAR_MM = 1.0  # within which gaps are exact
 _LEAST = 1e-9  # mm, of a distance that is divided by
 
 
@@ -37,6 +38,9 @@ class Obstacle(Protocol):
     def gap(self, x: FloatArray) -> Gap:
         """Give the gaps of points x (n, 3), mm."""
 
+    def near(self, x: FloatArray) -> BoolArray:
+        """Tell quickly which points (n, 3) may be less than `NEAR_MM` away, or inside: (n,)."""
+
 
 @dataclass(frozen=True)
 class Plane:
@@ -51,6 +55,10 @@ class Plane:
 
     point: FloatArray
     normal: FloatArray
+
+    def near(self, x: FloatArray) -> BoolArray:
+        """See `Obstacle`."""
+        return np.asarray((x - self.point) @ self.normal < NEAR_MM)
 
     def gap(self, x: FloatArray) -> Gap:
         """See `Obstacle`."""
@@ -78,6 +86,10 @@ class Cylinder:
     radius: float
     inside: bool = False
 
+    def near(self, x: FloatArray) -> BoolArray:
+        """See `Obstacle`."""
+        return self.gap(x).distance < NEAR_MM
+
     def gap(self, x: FloatArray) -> Gap:
         """See `Obstacle`."""
         arm = x - self.point
@@ -97,6 +109,10 @@ class Sphere:
 
     centre: FloatArray
     radius: float
+
+    def near(self, x: FloatArray) -> BoolArray:
+        """See `Obstacle`."""
+        return np.asarray(np.linalg.norm(x - self.centre, axis=-1) < self.radius + NEAR_MM)
 
     def gap(self, x: FloatArray) -> Gap:
         """See `Obstacle`."""

@@ -14,8 +14,9 @@ from fem.items import Batch
 from fem.material import PAIRS
 from fem.mesh import Mesh
 
-PENALTY = 3.0  # MPa/mm
+PENALTY = 30.0  # MPa/mm
 RAMP_MM = 0.02  # of depth, over which the penalty sets in
+_CLAMPED = 0.15  # of the diameter, that the clamp stiffens
 ORDERS = (6, 3)  # Gauss points of a face, around and along
 
 
@@ -45,8 +46,8 @@ class Surface:
         first = np.arange(mesh.layers)[:, None, None] * (mesh.ring + mesh.mid)
         nodes = first + mesh.outer
         along = np.einsum("qnd,lcni->lcqdi", dN, mesh.X.reshape(-1, 3)[nodes])
-        area = np.linalg.norm(np.cross(along[..., 0, :], along[..., 1, :]), axis=-1)
-        return cls(N, w * area, nodes)
+        area = w * np.linalg.norm(np.cross(along[..., 0, :], along[..., 1, :]), axis=-1)
+        return cls(N, area, nodes)
 
     def points(self, x: FloatArray) -> FloatArray:
         """Places of all points, (L, c, q, 3) mm, for nodes x (N, 3)."""
@@ -94,11 +95,22 @@ class Contact:
             slope,
         )
 
-    def update(self, mesh: Mesh, x: FloatArray) -> float:
-        """Take the contact pressure at nodes x for the multipliers; give the largest depth, mm."""
-        pressed = pressed_of(self, mesh, x)
-        self.multiplier = pressed.pressure
-        return max(0.0, -float(pressed.gap.distance.min()))
+    def energy(self, mesh: Mesh, x: FloatArray) -> float:
+        """Energy that contact adds at nodes x (layers + 1, ring + mid, 3), N mm."""
+        surface = Surface.of(mesh)
+        gap = self.obstacle.gap(surface.points(x.reshape(-1, 3)).reshape(-1, 3))
+        depth = -gap.distance.reshape(surface.area.shape)
+        if self.multiplier is not None:
+            depth = depth + self.multiplier / self.penalty
+        return float((self.penalty * surface.area * self._law(depth)[0]).sum())
+
+    def update(self, mesh: Mesh, x: FloatArray) -> None:
+        """Take the contact pressure at nodes x for the multipliers.
+
+        Not beside the clamp, where nothing gives way: there they would grow for ever.
+        """
+        self.multiplier = pressed_of(self, mesh, x).pressure
+        self.multiplier[mesh.z[:-1] < _CLAMPED * mesh.actuator.diameter] = 0.0
 
 
 @dataclass(frozen=True)
@@ -118,6 +130,11 @@ class Pressed:
     gap: Gap
     pressure: FloatArray
     area: FloatArray
+
+    @property
+    def depth(self) -> float:
+        """Largest depth in the obstacle, mm; the first layer, which the clamp holds, left out."""
+        return max(0.0, -float(self.gap.distance.reshape(self.area.shape)[1:].min()))
 
     @cached_property
     def force(self) -> FloatArray:
@@ -145,23 +162,25 @@ class _Item:
         contact, surface = self._contact, self._surface
         layers = slice(batch.layers.start, batch.layers.stop)
         points = np.asarray(surface.N @ batch.x[surface.nodes[layers]])  # (L, c, q, 3)
-        gap = contact.obstacle.gap(points.reshape(-1, 3))
-        depth = -gap.distance.reshape(points.shape[:3])
-        if contact.multiplier is not None:
-            depth = depth + contact.multiplier[layers] / contact.penalty
-        faces = np.nonzero((depth > 0.0).any(axis=2))  # (layer, around)
+        near = contact.obstacle.near(points.reshape(-1, 3)).reshape(points.shape[:3])
+        faces = np.nonzero(near.any(axis=2))  # (layer, around)
         if not faces[0].size:
             return
+        points = points[faces]  # (f, q, 3)
+        gap = contact.obstacle.gap(points.reshape(-1, 3))
+        depth = -gap.distance.reshape(points.shape[:2])
+        if contact.multiplier is not None:
+            depth = depth + contact.multiplier[layers][faces] / contact.penalty
         weight = contact.penalty * surface.area[layers][faces]  # (f, q)
-        psi, slope, curve = contact._law(depth[faces])
+        psi, slope, curve = contact._law(depth)
         batch.sums.energy += float((weight * psi).sum())
-        normal = gap.normal.reshape(points.shape)[faces]
+        normal = gap.normal.reshape(points.shape)
         push = -(weight * slope)[..., None] * normal
         forces = surface.N.T @ push  # (f, m, 3)
         batch.add_forces(surface.nodes[layers][faces], np.moveaxis(forces, -1, 0))
         if batch.skin is None:
             return
-        bend = gap.bend.reshape(*points.shape, 3)[faces]
+        bend = gap.bend.reshape(*points.shape, 3)
         moduli = (weight * curve)[..., None, None] * normal[..., :, None] * normal[..., None, :]
         moduli -= (weight * slope)[..., None, None] * bend
         pairs = (surface.N[:, :, None] * surface.N[:, None, :]).reshape(len(surface.N), -1)

@@ -14,13 +14,14 @@ from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial import cKDTree
 
-from fem.arrays import FloatArray
-from fem.contact.gap import Gap
+from fem.arrays import BoolArray, FloatArray
+from fem.contact.gap import NEAR_MM, Gap
 
 STEP_MM = 0.1
 SMOOTH_MM = 0.5  # standard deviation of what the outline is smoothed by
 _AHEAD_MM = 50.0  # that an open outline goes on straight
-_NEAR_MM = 1.0  # gap up to which the closest point matters
+_CELL_MM = 1.0  # of the raster that tells what is near
+_BEYOND_MM = 5.0  # that the raster reaches beyond the outline
 _ROUNDS = 3
 _FLAT = 0.05  # of 1 + k g, next to a centre of curvature
 
@@ -61,6 +62,23 @@ class Outline:
         tangent = self._at(s, 1)
         self._normal = _left(tangent / np.linalg.norm(tangent, axis=1)[:, None])
         self._points = even
+        self._corner = even.min(axis=0) - _BEYOND_MM
+        self._near = self._raster(even.max(axis=0) + _BEYOND_MM)
+
+    def _raster(self, last: FloatArray) -> BoolArray:
+        """Cells about the outline that hold points less than `NEAR_MM` away, or in the body."""
+        count = np.ceil((last - self._corner) / _CELL_MM).astype(int)
+        at = np.stack(np.meshgrid(*(np.arange(n) + 0.5 for n in count), indexing="ij"), axis=-1)
+        middle = (self._corner + _CELL_MM * at).reshape(-1, 2)
+        far, k = self._tree.query(middle)
+        outside = ((middle - self._points[k]) * self._normal[k]).sum(axis=1) > 0.0
+        reach = NEAR_MM + _CELL_MM
+        return np.asarray(~(outside & (far > reach))).reshape(*count)
+
+    def near(self, p: FloatArray) -> BoolArray:
+        """Tell which points p (n, 2) may be less than `NEAR_MM` away, or in the body: (n,)."""
+        cell = np.floor((p - self._corner) / _CELL_MM).astype(int)
+        return np.asarray(self._near[tuple(np.clip(cell, 0, np.array(self._near.shape) - 1).T)])
 
     def distance(self, p: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Signed distance of points p (n, 2), exact where it is below 1 mm.
@@ -80,7 +98,7 @@ class Outline:
         distance = ((p - self._points[nearest]) * normal).sum(axis=1)
         tangent = -_left(normal)
         curvature = np.zeros(len(p))
-        near = np.flatnonzero(distance < _NEAR_MM)
+        near = np.flatnonzero(distance < NEAR_MM)
         if near.size:
             at = self._closest(p[near], s[near])
             foot, slope, second = (self._at(at, k) for k in (0, 1, 2))
@@ -113,6 +131,10 @@ class Extruded:
 
     outline: Outline
 
+    def near(self, x: FloatArray) -> BoolArray:
+        """See `fem.contact.gap.Obstacle`."""
+        return self.outline.near(x[..., [2, 1]])
+
     def gap(self, x: FloatArray) -> Gap:
         """See `fem.contact.gap.Obstacle`."""
         distance, t, n, k = self.outline.distance(x[..., [2, 1]])
@@ -140,12 +162,20 @@ class Revolved:
     axis: FloatArray
     out: FloatArray
 
-    def gap(self, x: FloatArray) -> Gap:
-        """See `fem.contact.gap.Obstacle`."""
+    def _turned(self, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Points (n, 2) turned into the plane, and how far off the axis before and after."""
         arm = x[:, [2, 1]] - self.point
         along, off = arm @ self.axis, arm @ self.out
         r = np.maximum(np.hypot(off, x[:, 0]), 1e-9)
-        p = self.point + along[:, None] * self.axis + r[:, None] * self.out
+        return self.point + along[:, None] * self.axis + r[:, None] * self.out, off, r
+
+    def near(self, x: FloatArray) -> BoolArray:
+        """See `fem.contact.gap.Obstacle`."""
+        return self.outline.near(self._turned(x)[0])
+
+    def gap(self, x: FloatArray) -> Gap:
+        """See `fem.contact.gap.Obstacle`."""
+        p, off, r = self._turned(x)
         distance, t, n, k = self.outline.distance(p)
         outward = _placed(*(off / r * self.out[:, None])) + _across(x[:, 0] / r)
         around = _placed(*(-x[:, 0] / r * self.out[:, None])) + _across(off / r)
