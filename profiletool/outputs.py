@@ -1,4 +1,4 @@
-"""Files of results, by registries: `DESIGN_FILES`, `FE_FILES`, `TEMPLATE_FILES`, `DECK_FILES`.
+"""Files of results, by registries such as `DESIGN_FILES`, `FE_FILES`, `TEMPLATE_FILES`.
 
 A row gives a file's name and the function that writes it: one function and one row add a file.
 """
@@ -23,6 +23,7 @@ from profiletool.report.dossier import dossier_of, formula_marks
 from profiletool.report.error import error_figure
 from profiletool.report.fe_files import FE_FILES, MESH_FILES, THETA_FILES, FeOutput
 from profiletool.report.figure import mask_png, png
+from profiletool.report.grip import GRIP_FILES, GripOutput
 from profiletool.report.html import report_html
 from profiletool.report.overlay import draw_overlay
 from profiletool.report.plots import Mark
@@ -232,6 +233,11 @@ def deck_files(output: DeckOutput) -> dict[str, bytes]:
     ending = output.format.ending
     rows = {name.format(ending=ending): write for name, write in DECK_FILES.items()}
     return {**written(rows, output), "design.json": to_json(output.design).encode()}
+
+
+def grip_files(output: GripOutput) -> dict[str, bytes]:
+    """Make the files of a finger on its object: name to content."""
+    return written(GRIP_FILES, output)
 
 
 def candidates_png(unsure: Unsure) -> bytes:

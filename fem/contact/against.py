@@ -92,6 +92,7 @@ def solve_against(
     pressures: Sequence[float],
     *,
     tolerance: float = _ASKED,
+    settle: bool = True,
     threads: int = 2,
     progress: Callable[[float], None] | None = None,
 ) -> Contacts:
@@ -109,6 +110,8 @@ def solve_against(
         Gauge pressures to report, MPa; taken in rising order.
     tolerance : float
         Residual of reported states over the pressure's forces.
+    settle : bool
+        Whether multipliers take the depth away that the penalty leaves, some hundredths of a mm.
     threads : {1, 2}
     progress : callable, optional
         Takes the pressure reached so far, MPa.
@@ -130,7 +133,7 @@ def solve_against(
     touching = contact if isinstance(contact, Contact) else Contact(contact)
     touching.multiplier = None
     with blas.one_thread():
-        run = _Run(free, touching, tolerance, threads)
+        run = _Run(free, touching, tolerance, threads, settle=settle)
         try:
             run.go(asked, progress)
         finally:
@@ -143,9 +146,10 @@ def solve_against(
 
 class _Run:
     def __init__(
-        self, free: Solution, contact: Contact, tolerance: float, threads: int
+        self, free: Solution, contact: Contact, tolerance: float, threads: int, *, settle: bool
     ) -> None:
-        self._free, self._contact, self._tolerance = free, contact, tolerance
+        self._free, self._contact = free, contact
+        self._tolerance, self._settle = tolerance, settle
         self._mesh = free.mesh
         self.system = System(free.mesh, threads, [contact])
         self._chart = Chart(free.mesh)
@@ -305,12 +309,13 @@ class _Run:
 
     def _report(self) -> bool:
         """Report the last state, with its depth passed on to the multipliers."""
-        settled = self.finder.settle(self._last[-1], self._tolerance)
-        if settled is None:
-            self._fail(self._last[-1].pressure)
-            return False
-        found, depth = settled
-        before = self._last[-1]
+        found = before = self._last[-1]
+        if self._settle:
+            settled = self.finder.settle(before, self._tolerance)
+            if settled is None:
+                self._fail(before.pressure)
+                return False
+            found = settled
         self._work += found.pressure * (found.forces.volume - before.forces.volume)
         self._last[-1] = found
         mesh, twice = self._mesh, 2.0 if self._mesh.half else 1.0
@@ -332,7 +337,7 @@ class _Run:
             )
             return False
         self.states.append(state)
-        self.touches.append(Touch(pressed, depth, force, clamp))
+        self.touches.append(Touch(pressed, pressed.depth, force, clamp))
         return True
 
     def _fail(self, pressure: float) -> None:

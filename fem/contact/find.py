@@ -127,28 +127,20 @@ class Finder:
             share *= 0.4
         return None
 
-    def settle(self, found: Found, tolerance: float) -> tuple[Found, float] | None:
+    def settle(self, found: Found, tolerance: float) -> Found | None:
         """Pass the depth on to the multipliers, until a state lies less than `DEPTH_MM` deep.
 
-        Returns
-        -------
-        (Found, float) or None
-            The state and its depth, mm, which is larger where multipliers do not help; None where
-            an equilibrium is lost on the way.
+        It stays deeper where multipliers do not help in a few passes. None where an equilibrium is
+        lost on the way.
         """
         mesh = self._system.mesh
-        depth = self._depth(found)
         for _ in range(_PASSES):
-            if depth <= DEPTH_MM:
+            x = found.pose.x
+            if pressed_of(self._contact, mesh, x).depth <= DEPTH_MM:
                 break
-            self._contact.update(mesh, found.pose.x)
+            self._contact.update(mesh, x)
             better = self.find(found.pose, found.pressure, tolerance)
             if better is None:
                 return None
             found = better
-            depth = self._depth(found)
-        return found, depth
-
-
-    def _depth(self, found: Found) -> float:
-        return pressed_of(self._contact, self._system.mesh, found.pose.x).depth
+        return found

@@ -37,6 +37,8 @@ class Outline:
         An open outline goes on straight at both ends.
     smooth_mm : float
         Standard deviation of the smoothing along the curve.
+    back_mm : float
+        How far the body lies behind the points.
 
     Raises
     ------
@@ -45,7 +47,12 @@ class Outline:
     """
 
     def __init__(
-        self, points: FloatArray, *, closed: bool = False, smooth_mm: float = SMOOTH_MM
+        self,
+        points: FloatArray,
+        *,
+        closed: bool = False,
+        smooth_mm: float = SMOOTH_MM,
+        back_mm: float = 0.0,
     ) -> None:
         if len(points) < 3 or not np.isfinite(points).all():
             raise ValueError("an outline needs three points or more")
@@ -57,7 +64,7 @@ class Outline:
             even = np.concatenate([even, even[:1]]) if closed else even
         self._s = s
         self._at = CubicSpline(s, even, bc_type="periodic" if closed else "natural")
-        self._closed = closed
+        self._closed, self._back = closed, back_mm
         self._tree = cKDTree(even)
         tangent = self._at(s, 1)
         self._normal = _left(tangent / np.linalg.norm(tangent, axis=1)[:, None])
@@ -109,7 +116,7 @@ class Outline:
             g = ((p[near] - foot) * n).sum(axis=1)
             distance[near], tangent[near], normal[near] = g, t, n
             curvature[near] = k / np.maximum(1.0 + k * g, _FLAT)
-        return distance, tangent, normal, curvature
+        return distance + self._back, tangent, normal, curvature
 
     def _closest(self, p: FloatArray, s: FloatArray) -> FloatArray:
         """Arc lengths of the closest points, from those of the nearest samples."""

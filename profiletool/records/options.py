@@ -14,7 +14,11 @@ from typing import Any
 
 from profiletool.records.built import BuildErrors
 from profiletool.records.clamp import LEAST_MM
+from profiletool.records.grip import GripRequest
 from profiletool.records.request import Request
+
+
+ANY = -1  # count of a list that is as long as it may be
 
 
 @dataclass(frozen=True)
@@ -28,7 +32,7 @@ class ValueKind:
     show : callable
         A value as the report says it.
     count : int
-        How many numbers with commas between it takes; 0 where it takes no list.
+        How many numbers with commas between it takes, `ANY` for some; 0 where it takes no list.
     choices : tuple of str
         What a str may be; empty where it may be anything.
     """
@@ -45,6 +49,10 @@ def _number(unit: str) -> ValueKind:
 
 def _pixels(count: int) -> ValueKind:
     return ValueKind(tuple, lambda values: ",".join(f"{v:g}" for v in values) + " px", count)
+
+
+def _list(unit: str) -> ValueKind:
+    return ValueKind(tuple, lambda values: ",".join(f"{v:g}" for v in values) + unit, ANY)
 
 
 def _choice(*choices: str) -> ValueKind:
@@ -99,12 +107,12 @@ class Option:
         """Name of the field that holds the value, as messages name it."""
         return self.path.rpartition(".")[2]
 
-    def value(self, request: Request) -> Any:
+    def value(self, request: Request | GripRequest) -> Any:
         """Value of the option in a request."""
         holder, _, name = self.path.rpartition(".")
         return getattr(getattr(request, holder) if holder else request, name)
 
-    def shown(self, request: Request) -> str:
+    def shown(self, request: Request | GripRequest) -> str:
         """Value of the option in a request, in words."""
         value = self.value(request)
         return self.absent if value is None else self.kind.show(value)
@@ -262,6 +270,30 @@ DESIGN = (
         metavar="none|down|up|level|DEG",
     ),
 )  # fmt: skip
+GRIP = (
+    Option(
+        "--pressure", "pressures_bar", _list(" bar"),
+        "Pressures, bar (default: the design's own, and up to 1.2 times as much).",
+        metavar="BAR,...",
+    ),
+    Option(
+        "--friction", "friction", _list(""),
+        "Coefficients of friction to tell the payload at (default: 0 to 1).", metavar="MU,...",
+    ),
+    Option("--fingers", "fingers", _COUNT, "Fingers around the object.", least=1),
+    Option(
+        "--object", "solid", _choice("auto", "turned", "extruded"),
+        "The profile turned about the object's axis, or the same at every depth.",
+    ),
+    Option(
+        "--clearance", "clearance_mm", _MM, "Gap that the profile keeps from the object, mm.",
+        least=0.0,
+    ),
+    Option(
+        "--max-contact-kpa", "max_contact_kpa", _number(" kPa"),
+        "Contact pressure that the object bears, kPa.", above=0.0,
+    ),
+)  # fmt: skip
 MODEL = tuple(row for row in DESIGN if row.path.startswith("model."))
 # Fields of other records and commands that messages name.
 _OTHERS = {
@@ -271,7 +303,7 @@ _OTHERS = {
     "openF_mm": "--openF", "theta_deg": "--theta", "tip_mm": "--tip", "at_bar": "--at",
     "angles": "--angles", "joint": "--joint", "move_mm": "--move",
 }  # fmt: skip
-FLAGS: Mapping[str, str] = {**{row.field: row.flag for row in DESIGN}, **_OTHERS}
+FLAGS: Mapping[str, str] = {**{row.field: row.flag for row in (*DESIGN, *GRIP)}, **_OTHERS}
 
 
 def in_flags(text: str) -> str:
