@@ -69,7 +69,7 @@ def grip(
         told = grip_json(found)
         typer.echo(told if as_json else grip_text(found, asked), nl=False)
         if out is not None:
-            files = outputs.grip_files(GripOutput(found, asked, design, target.points, told))
+            files = outputs.grip_files(GripOutput(found, asked, target.points, told))
             write.write_folder(out, files, force)
             speaker(quiet)(f"written: {out}")
         if found.failure is not None:

@@ -46,7 +46,7 @@ _HOLDERS = {
 _FIELDS = {
     **dict.fromkeys(("side", "start_pct", "end_pct", "clearance_mm"), "What to follow"),
     **dict.fromkeys(("formula", "extrapolate"), "Tube"),
-    **dict.fromkeys(("verify", "refine"), "Finite elements"),
+    **dict.fromkeys(("verify", "refine", "grip", "solid"), "Finite elements"),
 }
 
 

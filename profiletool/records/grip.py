@@ -72,7 +72,7 @@ class Pad:
     force : (n, 3) N
         On the object, normal to it.
     kPa : (n,)
-        Contact pressure.
+        Contact pressure, the mean over a disc of 2 mm radius.
     """
 
     points: FloatArray
@@ -95,7 +95,7 @@ class GripState:
     radial_N, axial_N : float
         Of their resultant: toward the object's axis, and along it, positive upward in the picture.
     peak_kPa, mean_kPa : float
-        Contact pressure: the largest mean over a disc of 2 mm radius; over all that touches.
+        Contact pressure: the largest of the pad; the mean over all that touches.
     contact_share : float
         Of the tube's length, that touches.
     misfit_rms_mm, misfit_max_mm : float

@@ -118,6 +118,11 @@ class Option:
         return self.absent if value is None else self.kind.show(value)
 
 
+_OBJECT = Option(
+    "--object", "solid", _choice("auto", "turned", "extruded"),
+    "What the actuator meets: the profile turned about the object's axis, or the same at every "
+    "depth (auto: turned where it keeps to its side of the axis).",
+)  # fmt: skip
 DESIGN = (
     Option(
         "--height", "scale.height_mm", _MM, "Full height of the object, drawn or pictured, mm.",
@@ -252,6 +257,12 @@ DESIGN = (
         off=True,
     ),
     Option(
+        "--grip", "grip", _YES,
+        "Press the verified actuator on its object, and choose the pressure to work at there.",
+        off=True,
+    ),
+    _OBJECT,
+    Option(
         "--nu", "model.nu", _RATIO,
         "Poisson's ratio of the rubber (default: its own; the paper's 0.46).", least=0.0,
         absent="the rubber's own",
@@ -281,10 +292,7 @@ GRIP = (
         "Coefficients of friction to tell the payload at (default: 0 to 1).", metavar="MU,...",
     ),
     Option("--fingers", "fingers", _COUNT, "Fingers around the object.", least=1),
-    Option(
-        "--object", "solid", _choice("auto", "turned", "extruded"),
-        "The profile turned about the object's axis, or the same at every depth.",
-    ),
+    _OBJECT,
     Option(
         "--clearance", "clearance_mm", _MM, "Gap that the profile keeps from the object, mm.",
         least=0.0,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 from profiletool.records.built import BuildErrors
 from profiletool.records.clamp import LEAST_MM, Clamp
+from profiletool.records.grip import Solid
 from profiletool.records.model import ModelInputs
 from profiletool.records.side import Side
 
@@ -171,6 +172,10 @@ class Request:
     build : BuildErrors
     verify, refine : bool
         Whether finite elements verify the design, and correct it before.
+    grip : bool
+        Whether finite elements press the verified actuator on its object.
+    solid : {"auto", "turned", "extruded"}
+        What the profile is of: see `profiletool.records.grip.GripRequest`.
     model : ModelInputs
         What finite elements take.
     given : Picture, DrawnLine, Profile or None
@@ -198,5 +203,7 @@ class Request:
     build: BuildErrors = field(default_factory=BuildErrors)
     verify: bool = True
     refine: bool = True
+    grip: bool = True
+    solid: Solid = "auto"
     model: ModelInputs = field(default_factory=ModelInputs)
     given: Picture | DrawnLine | Profile | None = None

@@ -11,15 +11,13 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from profiletool.profile.shape_csv import shape_csv
-from profiletool.records.design import Design
 from profiletool.records.grip import Grip, GripRequest, GripState, Payload
 from profiletool.records.units import FloatArray
-from profiletool.report.figure import WIDE_IN, legend_below, panels, png
-from profiletool.report.palette import BLUE, GREEN, GREY, INK, ORANGE, RED
+from profiletool.report.figure import WIDE_IN, legend_below, panels, png, titled
+from profiletool.report.palette import BLUE, GREEN, GREY, INK, ORANGE
 from profiletool.report.registry import Writers
 
 _DEEP_MM = 0.02  # in the object, that is told
-_SHOWN_MU = 0.5
 _COLUMNS = (
     "pressure_bar", "normal_N", "radial_N", "axial_N", "peak_kPa", "mean_kPa", "contact_share",
     "misfit_rms_mm", "misfit_max_mm", "depth_mm",
@@ -35,7 +33,6 @@ class GripOutput:
     ----------
     found : Grip
     asked : GripRequest
-    design : Design
     target : (N, 2) mm
         The profile.
     told : str
@@ -44,7 +41,6 @@ class GripOutput:
 
     found: Grip
     asked: GripRequest
-    design: Design
     target: FloatArray
     told: str
 
@@ -181,7 +177,7 @@ def force_figure(found: Grip) -> Figure:
     return figure
 
 
-def pressure_figure(found: Grip, design: Design, target: FloatArray) -> Figure:
+def pressure_figure(found: Grip, target: FloatArray) -> Figure:
     """Draw the object with the finger on it, and the contact pressure as a coloured line."""
     figure, (axes,) = panels(1, WIDE_IN, 5.8)
     state = found.states[-1]
@@ -189,8 +185,7 @@ def pressure_figure(found: Grip, design: Design, target: FloatArray) -> Figure:
     shape = state.shape
     ring = np.concatenate([shape.facing, shape.far[::-1], shape.facing[:1]])
     axes.fill(*ring.T, facecolor="none", edgecolor=BLUE, lw=1.2, zorder=3)
-    s, kPa = pressure_along(state, target)
-    middles = target[:-1] + 0.5 * np.diff(target, axis=0)
+    _, kPa = pressure_along(state, target)
     on = kPa > 0.0
     pieces = LineCollection(
         list(np.stack([target[:-1], target[1:]], axis=1)[on]), cmap="YlOrRd", lw=5.0, zorder=4,
@@ -200,10 +195,7 @@ def pressure_figure(found: Grip, design: Design, target: FloatArray) -> Figure:
     pieces.set_clim(0.0, max(float(kPa.max()), 1e-9))
     axes.add_collection(pieces)
     figure.colorbar(pieces, ax=axes, label="contact pressure (kPa)", shrink=0.7)
-    axes.annotate(
-        f"{state.pressure_bar:.2f} bar", middles[np.argmax(kPa)], xytext=(12, -14),
-        textcoords="offset points", color=RED, fontsize=9.5,
-    )  # fmt: skip
+    titled(axes, f"{state.pressure_bar:.2f} bar")
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel("x (mm)")
     axes.set_ylabel("y (mm)")
@@ -211,7 +203,7 @@ def pressure_figure(found: Grip, design: Design, target: FloatArray) -> Figure:
 
 
 def pressure_along(state: GripState, target: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Contact pressure along the profile: force per area over 2 mm of it.
+    """Contact pressure along the profile.
 
     Returns
     -------
@@ -257,7 +249,7 @@ GRIP_FILES: Writers[GripOutput] = {
         png(force_figure(output.found)) if output.found.states else None
     ),
     "contact.png": lambda output: (
-        png(pressure_figure(output.found, output.design, output.target))
+        png(pressure_figure(output.found, output.target))
         if output.found.states
         else None
     ),

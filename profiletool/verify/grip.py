@@ -28,7 +28,7 @@ from profiletool.verify.solid import object_of
 from profiletool.verify.tube import actuator_of
 
 MARGINS = (1.0, 1.05, 1.1, 1.15, 1.2)  # times the design's pressure, where nothing else is asked
-_DISC_MM = 2.0  # radius that the peak of the pressure is a mean over
+_DISC_MM = 2.0  # radius of the discs that contact pressures are means over
 _KPA_PER_MPA = 1e3
 Progress = Callable[[float], None]
 
@@ -137,7 +137,7 @@ class _Place:
             normal_N=normal,
             radial_N=float(self._sign * force[0]),
             axial_N=float(force[1]),
-            peak_kPa=self._peak(touch),
+            peak_kPa=float(pad.kPa.max(initial=0.0)),
             mean_kPa=_KPA_PER_MPA * normal / area if area > 0.0 else 0.0,
             contact_share=self._share(touching.pressure),
             misfit_rms_mm=off.rms_mm,
@@ -167,23 +167,13 @@ class _Place:
         return x, area, pressure, f
 
     def _pad(self, touch: Touch) -> Pad:
-        x, _, pressure, force = self._whole(touch)
+        """Points that touch, with the mean pressure over a disc of the finger about each."""
+        x, area, pressure, force = self._whole(touch)
         on = pressure > 0.0
         points = np.column_stack([self._place(x[on]), x[on, 0]])
-        return Pad(points, self._vectors(force[on]), _KPA_PER_MPA * pressure[on])
-
-    def _peak(self, touch: Touch) -> float:
-        """Largest mean pressure over a disc of the finger's surface, kPa."""
-        x, area, pressure, _ = self._whole(touch)
-        on = np.flatnonzero(pressure > 0.0)
-        if not on.size:
-            return 0.0
-        tree = cKDTree(x)
-        means = (
-            float((area[k] * pressure[k]).sum() / area[k].sum())
-            for k in tree.query_ball_point(x[on], _DISC_MM)
-        )
-        return _KPA_PER_MPA * max(means)
+        push = area * pressure
+        means = [push[k].sum() / area[k].sum() for k in cKDTree(x).query_ball_point(x[on], _DISC_MM)]
+        return Pad(points, self._vectors(force[on]), _KPA_PER_MPA * np.array(means))
 
     def _share(self, pressure: FloatArray) -> float:
         """Share of the tube's length that touches."""
