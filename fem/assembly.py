@@ -20,7 +20,7 @@ from fem.mesh import Mesh
 from fem.part import Part
 from fem.pattern import Unknowns
 from fem.pivot import Pivot
-from fem.plug import Plug
+from fem.plug import Plug, inner_area
 
 
 @dataclass(frozen=True)
@@ -163,12 +163,16 @@ class System:
         return Forces(internal, gradient, energy, volume, least)
 
     def clamp(self, x: FloatArray, pressure: float) -> FloatArray:
-        """Force of the clamp on the tube (or on half of it) at x under a pressure: (3,) N."""
+        """Force of the clamp on the tube (or on half of it) at x under a pressure: (3,) N.
+
+        The volume that the wall encloses with the origin lacks the clamped opening's disc, and
+        its gradient two thirds of the push that the wall's last ring takes there.
+        """
         self._both(lambda part: part.evaluate(x, 0.0, None), alone=True)
         held: FloatArray = sum(
             part.sums.internal[0] - pressure * part.sums.gradient[0] for part in self._parts
         )[: self.mesh.ring].sum(axis=0)
-        return held
+        return held - [0.0, 0.0, pressure * inner_area(self.mesh) / 1.5]
 
     def compliance(
         self, x: FloatArray, layers: IntArray, around: IntArray, units: FloatArray

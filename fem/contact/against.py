@@ -28,6 +28,7 @@ _FIRST, _SMALLEST = 0.04, 2e-3  # steps, over the highest pressure asked for
 _FEW, _MANY = 3, 7  # factorisations of a step, below and above which the next is longer, shorter
 _FINE = 8  # places between two free states, where first touch is looked for
 _BISECTIONS = 20
+_MOVE_IN_MM, _LEAST_IN_MM = 0.5, 0.05  # first and shortest step of an obstacle that comes near
 
 
 @dataclass(frozen=True)
@@ -172,7 +173,7 @@ class _Run:
             )
             return
         starts = self._starts(asked[0])
-        if not self._begin(starts):
+        if not self._begin(starts, asked[0]):
             return
         step = _FIRST * asked[-1]
         for target in asked:
@@ -207,8 +208,6 @@ class _Run:
             stopped = stopped or bool(depths.max() > _LEAN_MM)
             if not stopped:
                 good.append(after)
-        if len(way) > 1 and self.first_touch is not None and len(good) == 1:
-            good = [way[0]]
         return good[::-1]
 
     def _between(self, before: State, after: State) -> tuple[Pose, FloatArray]:
@@ -241,7 +240,7 @@ class _Run:
                 low = middle
         return before.pressure + high * (after.pressure - before.pressure)
 
-    def _begin(self, starts: Sequence[State]) -> bool:
+    def _begin(self, starts: Sequence[State], first: float) -> bool:
         """Find the first state in contact, from the best free state that leads to one."""
         least = _SMALLEST * self._free.states[-1].pressure
         for free in starts:
@@ -250,13 +249,34 @@ class _Run:
             if pressure == 0.0:
                 pose = self._chart.taut(2.0 * self._mesh.actuator.gauze.transition)
                 pressure = max(least, 0.02 * self._mesh.actuator.rubber.shear_modulus)
-            found = self.finder.find(pose, pressure, self._tolerance)
+            tolerance = self._tolerance if pressure >= first * (1.0 - 1e-12) else _BETWEEN
+            if pressure > free.pressure:
+                found = self._moved_in(pose, pressure, tolerance)
+            else:
+                found = self.finder.find(pose, pressure, tolerance)
             if found is not None:
                 self._last = [found]
                 self._work = self._work_to(free, found)
                 return True
         self._fail(starts[-1].pressure)
         return False
+
+    def _moved_in(self, pose: Pose, pressure: float, tolerance: float) -> Found | None:
+        """Find the first state from rest: the obstacle comes to its place from where it is free."""
+        contact = self._contact
+        contact.lift = max(0.0, self._depth_at(pose))
+        step, found = _MOVE_IN_MM, self.finder.find(pose, pressure, tolerance)
+        while found is not None and (lift := contact.lift) > 0.0:
+            contact.lift = max(0.0, lift - step)
+            moved = self.finder.find(found.pose, pressure, tolerance)
+            if moved is not None:
+                found, step = moved, 2.0 * step
+                continue
+            contact.lift, step = lift, 0.4 * step
+            if step < _LEAST_IN_MM:
+                found = None
+        contact.lift = 0.0
+        return found
 
     def _work_to(self, free: State, found: Found) -> float:
         """Work that led to the first state: the free state's, and what the obstacle's push adds.

@@ -16,7 +16,7 @@ from fem.slack import Switching
 
 DEPTH_MM = 0.01  # that a reported state may lie in the obstacle
 _MOST = 25  # factorisations after which a start is given up
-_PASSES = 4  # of multipliers
+_PASSES = 6  # of multipliers
 _TURN = 0.3  # rad, the most that a section turns in one step
 _MOVE_MM = 4.0  # the most that a node moves in one step
 _DECREASE = 1e-4  # of the energy, over what its slope promises

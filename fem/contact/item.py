@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -70,11 +70,14 @@ class Contact:
     ----------
     multiplier : (L, c, q), MPa, or None
         Contact pressure that the points have without any depth; see `update`.
+    lift : float, mm
+        How far the obstacle stands back from its place.
     """
 
     def __init__(self, obstacle: Obstacle, penalty: float = PENALTY, ramp: float = RAMP_MM) -> None:
         self.obstacle, self.penalty, self.ramp = obstacle, penalty, ramp
         self.multiplier: FloatArray | None = None
+        self.lift = 0.0
 
     def __call__(self, mesh: Mesh) -> _Item:
         """Give an item of a mesh; all items of it share the multipliers."""
@@ -99,7 +102,7 @@ class Contact:
         """Energy that contact adds at nodes x (layers + 1, ring + mid, 3), N mm."""
         surface = Surface.of(mesh)
         gap = self.obstacle.gap(surface.points(x.reshape(-1, 3)).reshape(-1, 3))
-        depth = -gap.distance.reshape(surface.area.shape)
+        depth = -gap.distance.reshape(surface.area.shape) - self.lift
         if self.multiplier is not None:
             depth = depth + self.multiplier / self.penalty
         return float((self.penalty * surface.area * self._law(depth)[0]).sum())
@@ -148,6 +151,7 @@ def pressed_of(contact: Contact, mesh: Mesh, x: FloatArray) -> Pressed:
     surface = Surface.of(mesh)
     points = surface.points(x.reshape(-1, 3))
     gap = contact.obstacle.gap(points.reshape(-1, 3))
+    gap = replace(gap, distance=gap.distance + contact.lift)
     multiplier = 0.0 if contact.multiplier is None else contact.multiplier
     pressure = contact.pressure(gap.distance.reshape(surface.area.shape), multiplier)
     return Pressed(points, gap, pressure, surface.area)
@@ -168,7 +172,7 @@ class _Item:
             return
         points = points[faces]  # (f, q, 3)
         gap = contact.obstacle.gap(points.reshape(-1, 3))
-        depth = -gap.distance.reshape(points.shape[:2])
+        depth = -gap.distance.reshape(points.shape[:2]) - contact.lift
         if contact.multiplier is not None:
             depth = depth + contact.multiplier[layers][faces] / contact.penalty
         weight = contact.penalty * surface.area[layers][faces]  # (f, q)

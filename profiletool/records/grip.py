@@ -33,6 +33,10 @@ class GripRequest:
         That the profile keeps from the object.
     max_contact_kpa : float or None
         Contact pressure that the object bears.
+    against : str or None
+        Something else in place of the object: "plane:X,Y,DEG" through a point, its normal pointing
+        so many degrees counter-clockwise from x; "cylinder:X,Y,R" across the picture, or
+        "sphere:X,Y,R"; mm, object frame.
 
     Raises
     ------
@@ -46,6 +50,7 @@ class GripRequest:
     solid: Solid = "auto"
     clearance_mm: float = 0.0
     max_contact_kpa: float | None = None
+    against: str | None = None
 
     def __post_init__(self) -> None:
         if not all(math.isfinite(bar) and bar > 0.0 for bar in self.pressures_bar):
@@ -164,8 +169,8 @@ class Grip:
 
     Attributes
     ----------
-    solid : {"turned", "extruded"}
-        What the profile was made an object by.
+    solid : {"turned", "extruded", "plane", "cylinder", "sphere"}
+        What the profile was made an object by, or what was met in its place.
     states : tuple of GripState
     asked_bar : float
         The highest pressure asked for.
@@ -176,7 +181,7 @@ class Grip:
     factorisations : int
     seconds : float
     payload : Payload or None
-        None where nothing touches.
+        None where nothing touches, or something else was met.
     """
 
     solid: str

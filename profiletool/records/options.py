@@ -301,6 +301,11 @@ GRIP = (
         "--max-contact-kpa", "max_contact_kpa", _number(" kPa"),
         "Contact pressure that the object bears, kPa.", above=0.0,
     ),
+    Option(
+        "--against", "against", ValueKind(str, str),
+        "Something else in place of the object, such as a load cell: plane:X,Y,DEG with its normal "
+        "at DEG, cylinder:X,Y,R, sphere:X,Y,R; mm.", metavar="KIND:X,Y,NUMBER",
+    ),
 )  # fmt: skip
 MODEL = tuple(row for row in DESIGN if row.path.startswith("model."))
 # Fields of other records and commands that messages name.

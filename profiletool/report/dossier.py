@@ -10,6 +10,7 @@ from profiletool.pipeline import Result
 from profiletool.records.design import Design
 from profiletool.records.fe import Verification
 from profiletool.records.frames import Shape
+from profiletool.records.grip import Grip
 from profiletool.records.seal import proven
 from profiletool.report.asked import options_of
 from profiletool.report.plots import Mark
@@ -41,6 +42,8 @@ class Dossier:
         What was asked for.
     most_bar : float
         Highest pressure that was asked for.
+    grip : Grip or None
+        The finger on its object.
     """
 
     scene: Scene
@@ -52,6 +55,7 @@ class Dossier:
     template_svg: str
     options: Sequence[AskedOption]
     most_bar: float
+    grip: Grip | None = None
 
     @property
     def found(self) -> Verification | None:
@@ -84,6 +88,7 @@ def dossier_of(result: Result, scene: Scene, template_svg: str) -> Dossier:
         template_svg=template_svg,
         options=options_of(result.request),
         most_bar=result.request.tube.max_pressure_bar,
+        grip=result.grip,
     )
 
 

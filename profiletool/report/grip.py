@@ -108,7 +108,7 @@ def cautions(found: Grip, most_kPa: float | None = None) -> tuple[str, ...]:
 def grip_text(found: Grip, asked: GripRequest) -> str:
     """Lay out forces against pressure, and what the fingers carry."""
     lines = [
-        f"the object: its profile {found.solid}, rigid; forces of one finger on it in N",
+        f"{_met(found)}, rigid; forces of one finger on it in N",
         "   bar  normal  radial   axial  peak kPa  touches %  misfit mm RMS   max",
     ]
     lines += [
@@ -128,6 +128,12 @@ def grip_text(found: Grip, asked: GripRequest) -> str:
     lines += [f"note: {text}" for text in cautions(found, asked.max_contact_kpa)]
     lines.append(f"{found.factorisations} factorisations, {found.seconds:.1f} s")
     return "\n".join(lines) + "\n"
+
+
+def _met(found: Grip) -> str:
+    """Name what the finger meets."""
+    own = found.solid in ("turned", "extruded")
+    return f"the object: its profile {found.solid}" if own else f"against a {found.solid}"
 
 
 def _payload_lines(payload: Payload) -> list[str]:

@@ -9,17 +9,16 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import PurePath
 
-from matplotlib.figure import Figure
-
 from profiletool.records.fe import Verification
 from profiletool.records.seal import proven
 from profiletool.report.dossier import Dossier
 from profiletool.report.error import error_figure
 from profiletool.report.expectation import expectation
-from profiletool.report.figure import svg
 from profiletool.report.film import Film, film_of, still_of
-from profiletool.report.markup import Markup, adopted, joined, pairs, tag, text
+from profiletool.report.gripping import gripping
+from profiletool.report.markup import Markup, adopted, joined, pairs, tag
 from profiletool.report.plots import theta_figure
+from profiletool.report.plotted import plotted
 from profiletool.report.stage import controls, legend, readout, stage
 from profiletool.report.steps import steps
 from profiletool.report.tables import joint_table, loads, provenance, sensitivity_table
@@ -89,7 +88,7 @@ def _sections(dossier: Dossier, film: Film) -> list[_Section]:
             "Distance to the profile that the best choice of joints leaves, as the "
             f"{scene.by} predicts it, for every number of joints and every pressure."
         )
-        parts.append(_Section("trade-off", "More joints, more pressure", _plot(figure, "to", said)))
+        parts.append(_Section("trade-off", "More joints, more pressure", plotted(figure, "to", said)))
     parts.append(_Section("build", "How to build it", _build(dossier)))
     if design.trim:
         parts.append(
@@ -98,6 +97,9 @@ def _sections(dossier: Dossier, film: Film) -> list[_Section]:
     parts.append(_Section("template", "Cut template", _template(dossier)))
     if design.built is not None:
         parts.append(_Section("built", "What to expect of the built actuator", expectation(design)))
+    if dossier.grip is not None and dossier.grip.states:
+        told = gripping(dossier.grip, design, scene.profile.points)
+        parts.append(_Section("grip", "Against its object", told))
     if design.sensitivity:
         parts.append(_Section("sensitivity", "What small errors do", sensitivity_table(design)))
     told = provenance(design, found, dossier.options)
@@ -215,7 +217,7 @@ def _error(dossier: Dossier) -> Markup:
         "the arc: positive off the object, negative pressed into it. Grey: the joints' cuts, "
         "numbered."
     )
-    return _plot(figure, "error", said)
+    return plotted(figure, "error", said)
 
 
 def _pressure(dossier: Dossier, found: Verification) -> Markup:
@@ -228,7 +230,7 @@ def _pressure(dossier: Dossier, found: Verification) -> Markup:
     title = tag("h3", f"What the tube bears at {found.last.pressure_bar:.2f} bar")
     return tag(
         "div",
-        _plot(figure, "theta", said),
+        plotted(figure, "theta", said),
         tag("div", title, loads(found.last, dossier.scene.design)),
         class_="two",
     )
@@ -254,12 +256,6 @@ def _template(dossier: Dossier) -> Markup:
         "figure", tag("div", adopted(dossier.template_svg, "template-"), class_="sheet"),
         tag("figcaption", said), class_="plot",
     )  # fmt: skip
-
-
-def _plot(figure: Figure, name: str, said: str) -> Markup:
-    drawn = adopted(svg(figure), f"{name}-")
-    named = Markup(drawn.replace("<svg", f'<svg role="img" aria-label="{text(said)}"', 1))
-    return tag("figure", tag("div", named, class_="drawn"), tag("figcaption", said), class_="plot")
 
 
 def _states(film: Film) -> Markup:

@@ -24,7 +24,7 @@ from profiletool.records.units import BAR_PER_MPA, FloatArray
 from profiletool.verify.lines import Placement, placed_shape
 from profiletool.verify.payload import payload_of
 from profiletool.verify.run import pressures_to
-from profiletool.verify.solid import object_of
+from profiletool.verify.solid import given_obstacle, object_of
 from profiletool.verify.tube import actuator_of
 
 MARGINS = (1.0, 1.05, 1.1, 1.15, 1.2)  # times the design's pressure, where nothing else is asked
@@ -54,7 +54,10 @@ def run_grip(
     UsageError
         No object can be made of the profile.
     """
-    obstacle, made = object_of(design, target, asked.solid, asked.clearance_mm)
+    if asked.against is None:
+        obstacle, made = object_of(design, target, asked.solid, asked.clearance_mm)
+    else:
+        obstacle, made = given_obstacle(design, asked.against)
     bars = tuple(sorted(asked.pressures_bar)) or tuple(
         round(share * design.pressure_bar, 4) for share in MARGINS
     )
@@ -102,7 +105,7 @@ def grip_of(
         factorisations=held.factorisations,
         seconds=held.seconds,
     )
-    if not states:
+    if not states or asked.against is not None:
         return found
     last = states[-1]
     carried = payload_of(last.pad, asked.fingers, asked.friction, last.pressure_bar)

@@ -120,6 +120,7 @@ def test_forces_are_the_gradient_of_the_energy() -> None:
         assert (high - low) / (2.0 * h) == pytest.approx(float(internal @ way), rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_tube_in_a_sleeve_passes_on_what_it_does_not_bear_itself() -> None:
     """A thick tube of Mooney-Rivlin, no gauze to speak of, in a sleeve with a gap.
 
@@ -159,6 +160,7 @@ def test_a_tube_in_a_sleeve_passes_on_what_it_does_not_bear_itself() -> None:
     assert run.states[-1].energy_error < 1e-3
 
 
+@pytest.mark.slow
 def test_a_multiplier_takes_the_depth_away() -> None:
     joint = chain(12.0, [26.0], [8.0], [np.radians(90.0)])
     contact = Contact(Plane(np.array([0.0, -10.5, 0.0]), np.array([0.0, 1.0, 0.0])))
