@@ -28,6 +28,7 @@ _FIRST, _SMALLEST = 0.04, 2e-3  # steps, over the highest pressure asked for
 _FEW, _MANY = 3, 7  # factorisations of a step, below and above which the next is longer, shorter
 _FINE = 8  # places between two free states, where first touch is looked for
 _BISECTIONS = 20
+_FRICTION_PASSES = 2
 _MOVE_IN_MM, _LEAST_IN_MM = 0.5, 0.05  # first and shortest step of an obstacle that comes near
 
 
@@ -132,7 +133,7 @@ def solve_against(
         raise ValueError("pressures must be finite numbers above 0")
     begun = time.perf_counter()
     touching = contact if isinstance(contact, Contact) else Contact(contact)
-    touching.multiplier = None
+    touching.multiplier = touching.hold = None
     with blas.one_thread():
         run = _Run(free, touching, tolerance, threads, settle=settle)
         try:
@@ -256,6 +257,7 @@ class _Run:
                 found = self.finder.find(pose, pressure, tolerance)
             if found is not None:
                 self._last = [found]
+                self._contact.take_hold(self._mesh, found.pose.x)
                 self._work = self._work_to(free, found)
                 return True
         self._fail(starts[-1].pressure)
@@ -314,10 +316,18 @@ class _Run:
             poses.append(chart.move(last.pose, np.asarray(way)))
         poses.append(last.pose)
         best = min(poses, key=lambda pose: self.finder.potential(pose, pressure))
-        return self.finder.find(best, pressure, self._tolerance if asked else _BETWEEN)
+        tolerance = self._tolerance if asked else _BETWEEN
+        found = self.finder.find(best, pressure, tolerance)
+        for _ in range(_FRICTION_PASSES if self._contact.friction > 0.0 else 0):
+            if found is None:
+                break
+            self._contact.take_hold(self._mesh, found.pose.x, slip=False)
+            found = self.finder.find(found.pose, pressure, tolerance)
+        return found
 
     def _keep(self, found: Found) -> None:
         self._last = [*self._last[-2:], found]
+        self._contact.take_hold(self._mesh, found.pose.x)
         ends = [
             Equilibrium(
                 f.pressure, f.pose, f.forces,

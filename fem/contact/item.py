@@ -9,6 +9,7 @@ import numpy as np
 
 from fem.arrays import FloatArray, IntArray
 from fem.contact.gap import Gap, Obstacle
+from fem.contact.slide import Hold
 from fem.element import face_nodes, gauss, natural_nodes, shape
 from fem.items import Batch
 from fem.material import PAIRS
@@ -65,6 +66,8 @@ class Contact:
         MPa/mm.
     ramp : float
         mm of depth over which the penalty sets in.
+    friction : float
+        Coefficient.
 
     Attributes
     ----------
@@ -72,10 +75,19 @@ class Contact:
         Contact pressure that the points have without any depth; see `update`.
     lift : float, mm
         How far the obstacle stands back from its place.
+    hold : fem.contact.slide.Hold, or None
+        The state that friction counts the slip from; see `take_hold`.
     """
 
-    def __init__(self, obstacle: Obstacle, penalty: float = PENALTY, ramp: float = RAMP_MM) -> None:
-        self.obstacle, self.penalty, self.ramp = obstacle, penalty, ramp
+    def __init__(
+        self,
+        obstacle: Obstacle,
+        penalty: float = PENALTY,
+        ramp: float = RAMP_MM,
+        friction: float = 0.0,
+    ) -> None:
+        self.obstacle, self.penalty, self.ramp, self.friction = obstacle, penalty, ramp, friction
+        self.hold: Hold | None = None
         self.multiplier: FloatArray | None = None
         self.lift = 0.0
 
@@ -101,11 +113,28 @@ class Contact:
     def energy(self, mesh: Mesh, x: FloatArray) -> float:
         """Energy that contact adds at nodes x (layers + 1, ring + mid, 3), N mm."""
         surface = Surface.of(mesh)
-        gap = self.obstacle.gap(surface.points(x.reshape(-1, 3)).reshape(-1, 3))
+        points = surface.points(x.reshape(-1, 3))
+        gap = self.obstacle.gap(points.reshape(-1, 3))
         depth = -gap.distance.reshape(surface.area.shape) - self.lift
         if self.multiplier is not None:
             depth = depth + self.multiplier / self.penalty
-        return float((self.penalty * surface.area * self._law(depth)[0]).sum())
+        energy = float((self.penalty * surface.area * self._law(depth)[0]).sum())
+        if self.hold is None:
+            return energy
+        return energy + float((surface.area * self.hold.respond(points)[0]).sum())
+
+    def take_hold(self, mesh: Mesh, x: FloatArray, *, slip: bool = True) -> None:
+        """Count slip from nodes x, or without ``slip`` renew the pressure that bounds friction."""
+        if self.friction <= 0.0:
+            return
+        pressed = pressed_of(self, mesh, x)
+        bound = self.friction * pressed.pressure
+        if slip or self.hold is None:
+            normal = pressed.gap.normal.reshape(pressed.points.shape)
+            start = pressed.points if self.hold is None else self.hold.dragged(pressed.points)
+            self.hold = Hold(start, normal, bound)
+        else:
+            self.hold = replace(self.hold, bound=bound)
 
     def update(self, mesh: Mesh, x: FloatArray) -> None:
         """Take the contact pressure at nodes x for the multipliers.
@@ -127,12 +156,15 @@ class Pressed:
         Of the points, in one row: (L c q, ...).
     pressure : (L, c, q) MPa
     area : (L, c, q) mm^2
+    drag : (L, c, q, 3) MPa
+        Friction on the obstacle.
     """
 
     points: FloatArray
     gap: Gap
     pressure: FloatArray
     area: FloatArray
+    drag: FloatArray
 
     @property
     def depth(self) -> float:
@@ -142,8 +174,8 @@ class Pressed:
     @cached_property
     def force(self) -> FloatArray:
         """Force on the obstacle by each point (L, c, q, 3), N."""
-        push = self.area * self.pressure
-        return np.asarray(-push[..., None] * self.gap.normal.reshape(self.points.shape))
+        push = self.pressure[..., None] * self.gap.normal.reshape(self.points.shape)
+        return np.asarray(self.area[..., None] * (self.drag - push))
 
 
 def pressed_of(contact: Contact, mesh: Mesh, x: FloatArray) -> Pressed:
@@ -154,7 +186,8 @@ def pressed_of(contact: Contact, mesh: Mesh, x: FloatArray) -> Pressed:
     gap = replace(gap, distance=gap.distance + contact.lift)
     multiplier = 0.0 if contact.multiplier is None else contact.multiplier
     pressure = contact.pressure(gap.distance.reshape(surface.area.shape), multiplier)
-    return Pressed(points, gap, pressure, surface.area)
+    drag = np.zeros_like(points) if contact.hold is None else contact.hold.respond(points)[1]
+    return Pressed(points, gap, pressure, surface.area, drag)
 
 
 class _Item:
@@ -180,6 +213,12 @@ class _Item:
         batch.sums.energy += float((weight * psi).sum())
         normal = gap.normal.reshape(points.shape)
         push = -(weight * slope)[..., None] * normal
+        held = None if contact.hold is None else contact.hold.at(layers, faces)
+        if held is not None:
+            area = surface.area[layers][faces]
+            cost, drag, hinder = held.respond(points)
+            batch.sums.energy += float((area * cost).sum())
+            push += area[..., None] * drag
         forces = surface.N.T @ push  # (f, m, 3)
         batch.add_forces(surface.nodes[layers][faces], np.moveaxis(forces, -1, 0))
         if batch.skin is None:
@@ -187,6 +226,8 @@ class _Item:
         bend = gap.bend.reshape(*points.shape, 3)
         moduli = (weight * curve)[..., None, None] * normal[..., :, None] * normal[..., None, :]
         moduli -= (weight * slope)[..., None, None] * bend
+        if held is not None:
+            moduli += area[..., None, None] * hinder
         pairs = (surface.N[:, :, None] * surface.N[:, None, :]).reshape(len(surface.N), -1)
         m = surface.N.shape[1]
         layer, around = faces

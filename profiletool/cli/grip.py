@@ -73,7 +73,8 @@ def grip(
             write.write_folder(out, files, force)
             speaker(quiet)(f"written: {out}")
         if found.failure is not None:
-            raise NotVerified(f"{found.failure}; ask for less with --pressure")
+            advice = "; ask for less with `pressures_bar`" if found.states else ""
+            raise NotVerified(f"{found.failure}{advice}")
 
 
 with_signature(
