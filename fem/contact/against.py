@@ -169,9 +169,7 @@ class _Run:
         _check_symmetry(self._mesh, self._contact.obstacle)
         gap = self._contact.obstacle.gap(self._mesh.X[0, self._mesh.outer_ring])
         if gap.distance.min() < -_CLAMP_MM:
-            self.failure = (
-                f"the clamped end lies {-gap.distance.min():.1f} mm deep in the object"
-            )
+            self.failure = f"the clamped end lies {-gap.distance.min():.1f} mm deep in the object"
             return
         starts = self._starts(asked[0])
         if not self._begin(starts, asked[0]):

@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+
 from profiletool.errors import UsageError
 from profiletool.records.frames import Shape
 from profiletool.records.units import FloatArray
@@ -84,6 +86,12 @@ class Pad:
     force: FloatArray
     kPa: FloatArray
 
+    @property
+    def mean_kPa(self) -> float:
+        """Mean pressure, each point with its force."""
+        size = np.linalg.norm(self.force, axis=1)
+        return float(size @ self.kPa / size.sum()) if size.any() else 0.0
+
 
 @dataclass(frozen=True)
 class GripState:
@@ -100,7 +108,7 @@ class GripState:
     radial_N, axial_N : float
         Of their resultant: toward the object's axis, and along it, positive upward in the picture.
     peak_kPa, mean_kPa : float
-        Contact pressure: the largest of the pad; the mean over all that touches.
+        Contact pressure of the pad: the largest, and the mean by force.
     contact_share : float
         Of the tube's length, that touches.
     misfit_rms_mm, misfit_max_mm : float

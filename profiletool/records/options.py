@@ -17,7 +17,6 @@ from profiletool.records.clamp import LEAST_MM
 from profiletool.records.grip import GripRequest
 from profiletool.records.request import Request
 
-
 ANY = -1  # count of a list that is as long as it may be
 
 

@@ -255,8 +255,6 @@ GRIP_FILES: Writers[GripOutput] = {
         png(force_figure(output.found)) if output.found.states else None
     ),
     "contact.png": lambda output: (
-        png(pressure_figure(output.found, output.target))
-        if output.found.states
-        else None
+        png(pressure_figure(output.found, output.target)) if output.found.states else None
     ),
 }

@@ -56,9 +56,9 @@ def _advice(design: Design) -> tuple[Markup, ...]:
         return ()
     expected, most = design.built.expected_rms_mm, design.built.p95_rms_mm
     said = (
-        f"Work at {design.operate_bar:.2f} bar once the object is there. The shape was fitted free, "
-        f"at {design.pressure_bar:.2f} bar. An actuator that is stiffer than planned falls short of "
-        "the object at that pressure; one that is softer is stopped by it. So a pressure above it "
+        f"Work at {design.operate_bar:.2f} bar once the object is there. The shape was fitted "
+        f"free, at {design.pressure_bar:.2f} bar. An actuator that is stiffer than planned falls "
+        "short of the object there; one that is softer is stopped by it. So a pressure above it "
         f"costs little and gains much: {mm_text(expected.in_contact)} mm RMS are to be expected "
         f"there, and 95 % of builds lie within {mm_text(most.in_contact)} mm."
     )
@@ -72,8 +72,9 @@ def _forces(grip: Grip) -> Markup:
     )  # fmt: skip
     rows = [
         (
-            f"{s.pressure_bar:.2f}", f"{s.normal_N:.2f}", signed(s.radial_N, 2), signed(s.axial_N, 2),
-            f"{s.peak_kPa:.0f}", f"{100.0 * s.contact_share:.0f}", f"{s.misfit_rms_mm:.2f}",
+            f"{s.pressure_bar:.2f}", f"{s.normal_N:.2f}", signed(s.radial_N, 2),
+            signed(s.axial_N, 2), f"{s.peak_kPa:.0f}", f"{100.0 * s.contact_share:.0f}",
+            f"{s.misfit_rms_mm:.2f}",
         )
         for s in grip.states
     ]  # fmt: skip
@@ -90,16 +91,12 @@ def _carried(grip: Grip) -> tuple[Markup, ...]:
         return ()
     rows = [
         (f"{mu:g}", f"{load:.2f}", f"{tilt:.0f}")
-        for mu, load, tilt in zip(
-            payload.friction, payload.load_N, payload.tilt_Nmm, strict=True
-        )
+        for mu, load, tilt in zip(payload.friction, payload.load_N, payload.tilt_Nmm, strict=True)
         if mu in _SHOWN_MU
     ]
     heads = ("friction", "carries (N)", "bears tilting (N mm)")
     alone = payload.undercut_N
-    without = (
-        f"carry {alone:.2f} N" if alone >= 0.0 else f"push the object out with {-alone:.2f} N"
-    )
+    without = f"carry {alone:.2f} N" if alone >= 0.0 else f"push the object out with {-alone:.2f} N"
     said = (
         f"{payload.fingers} such fingers evenly around the object at {payload.pressure_bar:.2f} "
         f"bar. Without friction they {without}."

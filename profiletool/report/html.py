@@ -88,7 +88,9 @@ def _sections(dossier: Dossier, film: Film) -> list[_Section]:
             "Distance to the profile that the best choice of joints leaves, as the "
             f"{scene.by} predicts it, for every number of joints and every pressure."
         )
-        parts.append(_Section("trade-off", "More joints, more pressure", plotted(figure, "to", said)))
+        parts.append(
+            _Section("trade-off", "More joints, more pressure", plotted(figure, "to", said))
+        )
     parts.append(_Section("build", "How to build it", _build(dossier)))
     if design.trim:
         parts.append(

@@ -92,8 +92,7 @@ def grip_of(
     """Read a run against the object off, with the payload at its highest pressure."""
     place = _Place(design, held.mesh, target)
     states = tuple(
-        place.state(state, touch)
-        for state, touch in zip(held.states, held.touches, strict=True)
+        place.state(state, touch) for state, touch in zip(held.states, held.touches, strict=True)
     )
     first = held.first_touch
     found = Grip(
@@ -133,7 +132,6 @@ class _Place:
         shape = placed_shape(mesh, state, self._place)
         off = misfit_to(shape, self._target)
         pad = self._pad(touch)
-        area = twice * float((touching.area * (touching.pressure > 0.0))[free].sum())
         normal = float(push[free].sum())
         return GripState(
             pressure_bar=BAR_PER_MPA * state.pressure,
@@ -141,7 +139,7 @@ class _Place:
             radial_N=float(self._sign * force[0]),
             axial_N=float(force[1]),
             peak_kPa=float(pad.kPa.max(initial=0.0)),
-            mean_kPa=_KPA_PER_MPA * normal / area if area > 0.0 else 0.0,
+            mean_kPa=pad.mean_kPa,
             contact_share=self._share(touching.pressure),
             misfit_rms_mm=off.rms_mm,
             misfit_max_mm=off.max_mm,
@@ -175,7 +173,9 @@ class _Place:
         on = pressure > 0.0
         points = np.column_stack([self._place(x[on]), x[on, 0]])
         push = area * pressure
-        means = [push[k].sum() / area[k].sum() for k in cKDTree(x).query_ball_point(x[on], _DISC_MM)]
+        means = [
+            push[k].sum() / area[k].sum() for k in cKDTree(x).query_ball_point(x[on], _DISC_MM)
+        ]
         return Pad(points, self._vectors(force[on]), _KPA_PER_MPA * np.array(means))
 
     def _share(self, pressure: FloatArray) -> float:

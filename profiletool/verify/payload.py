@@ -68,9 +68,7 @@ def _thinned(points: FloatArray, force: FloatArray) -> tuple[FloatArray, FloatAr
     return summed(size[:, None] * points) / total, resultant
 
 
-def around(
-    points: FloatArray, force: FloatArray, fingers: int
-) -> tuple[FloatArray, FloatArray]:
+def around(points: FloatArray, force: FloatArray, fingers: int) -> tuple[FloatArray, FloatArray]:
     """Repeat points and forces (n, 3) for fingers evenly around the axis: (fingers n, 3) each."""
     turns = 2.0 * np.pi * np.arange(fingers) / fingers
     c, s, z = np.cos(turns), np.sin(turns), np.zeros(fingers)
@@ -121,9 +119,9 @@ def _solved(
     weight = np.linalg.norm(force, axis=1).sum()
     arm = points - (normal[:, None] * points).sum(axis=0) / weight
     scale = max(float(np.abs(arm).max()), 1e-9)
-    wrench = np.concatenate(
-        [tangents, np.cross(arm[:, None], tangents) / scale], axis=-1
-    ).reshape(-1, 6)
+    wrench = np.concatenate([tangents, np.cross(arm[:, None], tangents) / scale], axis=-1).reshape(
+        -1, 6
+    )
     held = np.concatenate([force.sum(axis=0), np.cross(arm, force).sum(axis=0) / scale])
     asked = np.concatenate([push, turn])
     # Unknowns: tangential forces along the pyramids' edges, then the share, either sign. A turn
@@ -153,6 +151,4 @@ def _tangents(normal: FloatArray) -> FloatArray:
     steep /= np.where(level, 1.0, size)[:, None]
     across = np.cross(normal, steep)
     turn = 2.0 * np.pi * np.arange(_SIDES)[:, None] / _SIDES
-    return np.asarray(
-        np.cos(turn) * steep[:, None, :] + np.sin(turn) * across[:, None, :]
-    )
+    return np.asarray(np.cos(turn) * steep[:, None, :] + np.sin(turn) * across[:, None, :])

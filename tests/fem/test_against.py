@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 
 from fem.actuator import Actuator, chain
 from fem.contact.against import Contacts, solve_against
-from fem.contact.gap import Cylinder, Gap, Obstacle, Plane, Sphere
+from fem.contact.gap import Gap, Obstacle, Plane, Sphere
 from fem.contact.item import Contact, Surface, pressed_of
 from fem.element import face_nodes, gauss, natural_nodes, shape
-from fem.mesh import make_mesh
-from fem.meshsize import DEFAULT_MESH, MeshSize
+from fem.meshsize import DEFAULT_MESH
 from fem.solution import Solution
 from fem.solver import solve
 from tests.fem.tubes import COARSE, mesh_of

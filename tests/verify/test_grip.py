@@ -12,14 +12,13 @@ from profiletool.errors import UsageError
 from profiletool.files.design_json import load_design
 from profiletool.records.built import BuildErrors, Built, BuiltMisfit
 from profiletool.records.design import Design, Joint
-from profiletool.records.frames import Pose
-from profiletool.records.grip import Grip, GripRequest
+from profiletool.records.frames import Pose, base_axes, outward
+from profiletool.records.grip import Grip, GripRequest, Solid
 from profiletool.records.side import side_sign
 from profiletool.records.units import FloatArray
 from profiletool.report.grip import grip_csv, grip_json, grip_text
 from profiletool.verify.fields import fields_of
 from profiletool.verify.grip import run_grip
-from profiletool.verify.lines import Placement
 from profiletool.verify.operate import in_contact
 from profiletool.verify.run import Run, run_design
 from profiletool.verify.solid import given_obstacle, object_of
@@ -54,25 +53,25 @@ def found(design: Design, target: FloatArray) -> Grip:
 
 
 def test_the_object_lies_where_the_profile_does(design: Design, target: FloatArray) -> None:
-    sign = side_sign(design.source.side)
-    place = Placement(design.base_pose, sign, 10.0)
-    obstacle, made = object_of(design, target)
-    assert made == "turned"
-    mesh_like = np.random.default_rng(1).uniform([-5, -60, 0], [5, 10, 60], (400, 3))
-    gap = obstacle.gap(mesh_like)
-    flat = mesh_like[:, 0] * 0.0
-    in_plane = place(np.column_stack([flat, mesh_like[:, 1:]]))
-    middle = np.abs(mesh_like[:, 0]) < 0.2
-    nearest = np.linalg.norm(in_plane[:, None] - target[None], axis=2).min(axis=1)
-    near = middle & (np.abs(gap.distance) < 0.9)
-    assert near.any()
-    np.testing.assert_allclose(np.abs(gap.distance[near]), nearest[near], atol=0.15)
-    back, _ = object_of(design, target, clearance_mm=0.5)
-    np.testing.assert_allclose(back.gap(mesh_like).distance, gap.distance + 0.5)
+    along, out = base_axes(np.pi, side_sign(design.source.side))
+    points = target[10:-10:5]
+    tangent = np.gradient(points, axis=0)
+    tangent /= np.hypot(*tangent.T)[:, None]
+    off = outward(np.arctan2(tangent[:, 1], tangent[:, 0]), side_sign(design.source.side))
+    solids: tuple[Solid, ...] = ("turned", "extruded")
+    for distance in (0.0, 0.5):
+        moved = points + distance * off
+        x = np.column_stack([np.zeros(len(points)), moved @ out - 10.0, moved @ along])
+        for solid in solids:
+            obstacle, made = object_of(design, target, solid)
+            assert made == solid
+            np.testing.assert_allclose(obstacle.gap(x).distance, distance, atol=0.03)
+            back, _ = object_of(design, target, solid, clearance_mm=0.2)
+            np.testing.assert_allclose(back.gap(x).distance, distance + 0.2, atol=0.03)
 
 
 def test_a_profile_across_the_axis_is_extruded(design: Design, target: FloatArray) -> None:
-    moved = target + [40.0, 0.0]
+    moved = target + np.array([40.0, 0.0])
     assert object_of(design, moved)[1] == "extruded"
     with pytest.raises(UsageError, match="beyond the object's axis"):
         object_of(design, moved, "turned")
@@ -103,7 +102,7 @@ def test_more_pressure_presses_harder_and_moves_little(found: Grip, design: Desi
     assert last.energy_error < 1e-3
     assert last.depth_mm <= 0.011
     assert 0.0 < last.contact_share < 1.0
-    assert last.peak_kPa > last.mean_kPa > 0.0
+    assert last.peak_kPa >= last.mean_kPa > 0.0
     force = last.pad.force.sum(axis=0)
     sign = side_sign(design.source.side)
     np.testing.assert_allclose(force, [sign * last.radial_N, last.axial_N, 0.0], atol=1e-9)
