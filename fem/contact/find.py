@@ -127,20 +127,29 @@ class Finder:
             share *= 0.4
         return None
 
-    def settle(self, found: Found, tolerance: float) -> Found | None:
+    def settle(self, found: Found, tolerance: float) -> tuple[Found, float] | None:
         """Pass the depth on to the multipliers, until a state lies less than `DEPTH_MM` deep.
 
-        It stays deeper where multipliers do not help in a few passes. None where an equilibrium is
-        lost on the way.
+        Returns
+        -------
+        (Found, float) or None
+            The state, deeper where multipliers do not help in a few passes, and the work that the
+            obstacle does as they push the tube out, N mm; None where an equilibrium is lost.
         """
-        mesh = self._system.mesh
+        mesh, contact, work = self._system.mesh, self._contact, 0.0
+        pressed = pressed_of(contact, mesh, found.pose.x)
         for _ in range(_PASSES):
-            x = found.pose.x
-            if pressed_of(self._contact, mesh, x).depth <= DEPTH_MM:
+            if pressed.depth <= DEPTH_MM:
                 break
-            self._contact.update(mesh, x)
+            before = contact.multiplier
+            contact.update(pressed)
             better = self.find(found.pose, found.pressure, tolerance)
             if better is None:
                 return None
-            found = better
-        return found
+            found, last = better, pressed
+            pressed = pressed_of(contact, mesh, found.pose.x)
+            assert contact.multiplier is not None
+            rise = contact.multiplier - (0.0 if before is None else before)
+            mean = 0.5 * (last.pressure + pressed.pressure)
+            work += float((pressed.area * mean * rise).sum()) / contact.penalty
+        return found, work

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from fem.arrays import FloatArray, IntArray
+from fem.arrays import BoolArray, FloatArray, IntArray
 from fem.contact.gap import Gap, Obstacle
 from fem.contact.slide import Hold
 from fem.element import face_nodes, gauss, natural_nodes, shape
@@ -136,13 +136,12 @@ class Contact:
         else:
             self.hold = replace(self.hold, bound=bound)
 
-    def update(self, mesh: Mesh, x: FloatArray) -> None:
-        """Take the contact pressure at nodes x for the multipliers.
+    def update(self, pressed: Pressed) -> None:
+        """Take a state's contact pressure for the multipliers.
 
         Not beside the clamp, where nothing gives way: there they would grow for ever.
         """
-        self.multiplier = pressed_of(self, mesh, x).pressure
-        self.multiplier[mesh.z[:-1] < _CLAMPED * mesh.actuator.diameter] = 0.0
+        self.multiplier = np.where(pressed.clamped[:, None, None], 0.0, pressed.pressure)
 
 
 @dataclass(frozen=True)
@@ -158,6 +157,8 @@ class Pressed:
     area : (L, c, q) mm^2
     drag : (L, c, q, 3) MPa
         Friction on the obstacle.
+    clamped : (L,)
+        Layers so near to the clamp that they hardly give way.
     """
 
     points: FloatArray
@@ -165,6 +166,7 @@ class Pressed:
     pressure: FloatArray
     area: FloatArray
     drag: FloatArray
+    clamped: BoolArray
 
     @property
     def depth(self) -> float:
@@ -187,7 +189,8 @@ def pressed_of(contact: Contact, mesh: Mesh, x: FloatArray) -> Pressed:
     multiplier = 0.0 if contact.multiplier is None else contact.multiplier
     pressure = contact.pressure(gap.distance.reshape(surface.area.shape), multiplier)
     drag = np.zeros_like(points) if contact.hold is None else contact.hold.respond(points)[1]
-    return Pressed(points, gap, pressure, surface.area, drag)
+    clamped = mesh.z[:-1] < _CLAMPED * mesh.actuator.diameter
+    return Pressed(points, gap, pressure, surface.area, drag, clamped)
 
 
 class _Item:

@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from fem.contact.against import Contacts, Touch, solve_against
+from fem.contact.against import solve_against
 from fem.contact.gap import Obstacle
 from fem.contact.item import ORDERS
+from fem.contact.touch import Contacts, Touch
 from fem.element import gauss
 from fem.mesh import Mesh
 from fem.solution import Solution, State

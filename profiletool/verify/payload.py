@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from scipy.optimize import linprog
-from scipy.sparse import csr_array, kron
+from scipy.sparse import csr_array
 
 from profiletool.records.grip import Pad, Payload
 from profiletool.records.units import FloatArray
@@ -128,8 +130,11 @@ def _solved(
     # leaves the vertical force to whatever else holds the object.
     rows = np.array([0, 2, 3, 4, 5]) if not push.any() else np.arange(6)
     equal = np.column_stack([wrench.T, asked])[rows]
-    cone = csr_array(kron(csr_array(np.eye(n)), np.ones((1, _SIDES))))
-    cone.resize((n, n * _SIDES + 1))
+    edges = np.arange(n * _SIDES)
+    # scipy's stubs know of no sparse matrix here, which its documentation names first.
+    cone: Any = csr_array(
+        (np.ones(len(edges)), (edges // _SIDES, edges)), shape=(n, len(edges) + 1)
+    )
     cost = np.zeros(n * _SIDES + 1)
     cost[-1] = -1.0
     bounds = [(0.0, None)] * (n * _SIDES) + [(None, None)]

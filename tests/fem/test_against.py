@@ -10,11 +10,11 @@ import pytest
 from numpy.typing import NDArray
 
 from fem.actuator import Actuator, chain
-from fem.contact.against import Contacts, solve_against
+from fem.contact.against import solve_against
 from fem.contact.gap import Gap, Obstacle, Plane, Sphere
 from fem.contact.item import Contact, Surface, pressed_of
+from fem.contact.touch import Contacts
 from fem.element import face_nodes, gauss, natural_nodes, shape
-from fem.meshsize import DEFAULT_MESH
 from fem.solution import Solution
 from fem.solver import solve
 from tests.fem.tubes import COARSE, mesh_of
@@ -66,7 +66,7 @@ def test_a_uniform_pressure_makes_the_consistent_forces_of_its_faces() -> None:
 
 
 def test_forces_balance_and_energy_is_kept(free: Solution) -> None:
-    run = solve_against(free, FLOOR, [0.05, 0.06], tolerance=1e-9)
+    run = solve_against(free, FLOOR, [0.05, 0.06], tolerance=3e-10)
     assert run.failure is None
     for state, touch in zip(run.states, run.touches, strict=True):
         # The air pushes on the clamped opening as it does on the closed end.
@@ -154,25 +154,42 @@ def test_half_a_tube_meets_no_lopsided_object(free: Solution) -> None:
     assert abs(run.touches[-1].force[0]) > 0.01
 
 
+class Slot:
+    """What lies above and below a slot along the tube."""
+
+    def __init__(self, half: float) -> None:
+        self._half = half
+
+    def gap(self, x: FloatArray) -> Gap:
+        normal = np.zeros_like(x)
+        normal[:, 1] = np.where(x[:, 1] > 0.0, -1.0, 1.0)
+        return Gap(self._half - np.abs(x[:, 1]), normal, np.zeros((*x.shape, 3)))
+
+    def near(self, x: FloatArray) -> NDArray[np.bool_]:
+        return np.asarray(np.abs(x[:, 1]) > self._half - 1.0)
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("alpha", "least"), [(84.0, 344.0), (108.0, 322.0), (132.0, 296.0), (156.0, 267.0)]
-)
+@pytest.mark.parametrize(("alpha", "blocked"), [(84.0, 344.0), (156.0, 267.0)])
 def test_a_blocked_joint_pushes_with_more_than_its_pressure_about_its_uncut_threads(
-    alpha: float, least: float
+    alpha: float, blocked: float
 ) -> None:
-    """Moment P pi r^2 e of the pressure about the middle of the uncut sector's threads, N mm."""
+    """Moment P pi r^2 e of the pressure about the middle of the uncut sector's threads, N mm.
+
+    A slot holds the tube straight but for what the wrapped sectors give way by, so the joint
+    keeps a part of its free angle, and loses as much of its moment.
+    """
     tube = chain(30.0, [30.0], [10.0], [np.radians(alpha)])
-    free = solve(tube, np.linspace(0.019, 0.19, 10).tolist(), DEFAULT_MESH)
-    beneath = Plane(np.array([0.0, -10.02, 0.0]), np.array([0.0, 1.0, 0.0]))
-    run = solve_against(free, beneath, [0.19])
+    free = solve(tube, np.linspace(0.019, 0.19, 10).tolist())
+    run = solve_against(free, Slot(10.05), [0.19])
     assert run.failure is None
     pressed = run.touches[-1].pressed
-    push = 2.0 * pressed.area * pressed.pressure
     beyond = pressed.points[..., 2] > 30.0
-    moment = float((push * (pressed.points[..., 2] - 30.0))[beyond].sum())
-    assert least < moment < 1.6 * least
-    assert abs(float(run.states[-1].theta[0])) < np.radians(3.0)
+    arm = pressed.points[..., 2] - 30.0
+    moment = -2.0 * float((pressed.force[..., 1] * arm)[beyond].sum())
+    kept = float(run.states[-1].theta[0] / free.states[-1].theta[0])
+    assert kept < 0.5
+    assert blocked * (1.0 - kept) < moment < 1.5 * blocked
 
 
 def test_asked_pressures_must_be_pressures(free: Solution) -> None:
