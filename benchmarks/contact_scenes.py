@@ -18,11 +18,11 @@ import numpy as np
 from _common import machine, table
 
 from fem.actuator import AWAY, TOWARD, Actuator, Window
+from fem.against import solve_against
 from fem.arrays import FloatArray
-from fem.contact.against import solve_against
-from fem.contact.gap import Obstacle
-from fem.contact.outline import Extruded, Outline, Revolved
 from fem.errors import FemError
+from fem.gap import Obstacle
+from fem.outline import Extruded, Outline, Revolved
 from fem.solver import solve
 
 MISPLACED_MM, AXIS_MM = 5.0, 25.0

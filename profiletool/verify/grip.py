@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from fem.contact.against import solve_against
-from fem.contact.gap import Obstacle
-from fem.contact.item import ORDERS
-from fem.contact.touch import Contacts, Touch
+from fem.against import solve_against
+from fem.contact import ORDERS
 from fem.element import gauss
+from fem.gap import Obstacle
+from fem.grasp import Contacts, Touch
 from fem.mesh import Mesh
 from fem.solution import Solution, State
 from fem.solver import solve
@@ -76,7 +76,7 @@ def pressed(
     *,
     settle: bool = True,
 ) -> Contacts:
-    """Press a finger on its object at pressures in bar; see `fem.contact.against`."""
+    """Press a finger on its object at pressures in bar; see `fem.against`."""
 
     def told(pressure: float) -> None:
         if progress is not None:

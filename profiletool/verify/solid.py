@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fem.contact.gap import Cylinder, Obstacle, Plane, Sphere
-from fem.contact.outline import Extruded, Outline, Revolved
+from fem.gap import Cylinder, Obstacle, Plane, Sphere
+from fem.outline import Extruded, Outline, Revolved
 from profiletool.errors import UsageError
 from profiletool.records.design import Design
 from profiletool.records.frames import base_axes, direction

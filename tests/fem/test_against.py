@@ -10,11 +10,11 @@ import pytest
 from numpy.typing import NDArray
 
 from fem.actuator import Actuator, chain
-from fem.contact.against import solve_against
-from fem.contact.gap import Gap, Obstacle, Plane, Sphere
-from fem.contact.item import Contact, Surface, pressed_of
-from fem.contact.touch import Contacts
+from fem.against import solve_against
+from fem.contact import Contact, Surface, pressed_of
 from fem.element import face_nodes, gauss, natural_nodes, shape
+from fem.gap import Gap, Obstacle, Plane, Sphere
+from fem.grasp import Contacts
 from fem.solution import Solution
 from fem.solver import solve
 from tests.fem.tubes import COARSE, mesh_of

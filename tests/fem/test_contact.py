@@ -12,12 +12,12 @@ from scipy.integrate import quad
 from fem import blas
 from fem.actuator import chain
 from fem.assembly import System
-from fem.contact.gap import Cylinder, Obstacle, Plane, Sphere
-from fem.contact.item import Contact, pressed_of
-from fem.contact.outline import Extruded, Outline, Revolved
+from fem.contact import Contact, pressed_of
+from fem.gap import Cylinder, Obstacle, Plane, Sphere
 from fem.gauze import Gauze
 from fem.material import MooneyRivlin
 from fem.meshsize import MeshSize
+from fem.outline import Extruded, Outline, Revolved
 from fem.solver import solve
 from tests.fem.test_tangent import CASES, SOFT, differences, factored, turning
 from tests.fem.tubes import COARSE, bent, mesh_of, shifted

@@ -8,7 +8,7 @@ import numpy as np
 
 from fem.arrays import FloatArray
 from fem.assembly import Forces, Inverse, System
-from fem.contact.item import Contact, pressed_of
+from fem.contact import Contact, pressed_of
 from fem.errors import Attempt
 from fem.newton import relative_residual
 from fem.sections import Chart, Pose

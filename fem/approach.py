@@ -8,8 +8,8 @@ from itertools import pairwise
 import numpy as np
 
 from fem.arrays import FloatArray
-from fem.contact.gap import Obstacle
-from fem.contact.item import Surface
+from fem.contact import Surface
+from fem.gap import Obstacle
 from fem.mesh import Mesh
 from fem.sections import Chart, Pose
 from fem.solution import State

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fem.contact.against import solve_against
-from fem.contact.item import Contact
-from fem.contact.slide import RAMP_MM, Hold
+from fem.against import solve_against
+from fem.contact import Contact
+from fem.friction import RAMP_MM, Hold
 from fem.solver import solve
 from tests.fem.test_against import FLOOR, joint
 from tests.fem.tubes import COARSE

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fem.arrays import FloatArray
-from fem.contact.item import Pressed
+from fem.contact import Pressed
 from fem.errors import Attempt
 from fem.mesh import Mesh
 from fem.solution import State

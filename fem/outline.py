@@ -15,7 +15,7 @@ from scipy.ndimage import gaussian_filter1d
 from scipy.spatial import cKDTree
 
 from fem.arrays import BoolArray, FloatArray
-from fem.contact.gap import NEAR_MM, Gap
+from fem.gap import NEAR_MM, Gap
 
 STEP_MM = 0.1
 SMOOTH_MM = 0.5  # standard deviation of what the outline is smoothed by
@@ -139,11 +139,11 @@ class Extruded:
     outline: Outline
 
     def near(self, x: FloatArray) -> BoolArray:
-        """See `fem.contact.gap.Obstacle`."""
+        """See `fem.gap.Obstacle`."""
         return self.outline.near(x[..., [2, 1]])
 
     def gap(self, x: FloatArray) -> Gap:
-        """See `fem.contact.gap.Obstacle`."""
+        """See `fem.gap.Obstacle`."""
         distance, t, n, k = self.outline.distance(x[..., [2, 1]])
         along = _placed(t[:, 0], t[:, 1])
         bend = k[:, None, None] * along[:, :, None] * along[:, None, :]
@@ -177,11 +177,11 @@ class Revolved:
         return self.point + along[:, None] * self.axis + r[:, None] * self.out, off, r
 
     def near(self, x: FloatArray) -> BoolArray:
-        """See `fem.contact.gap.Obstacle`."""
+        """See `fem.gap.Obstacle`."""
         return self.outline.near(self._turned(x)[0])
 
     def gap(self, x: FloatArray) -> Gap:
-        """See `fem.contact.gap.Obstacle`."""
+        """See `fem.gap.Obstacle`."""
         p, off, r = self._turned(x)
         distance, t, n, k = self.outline.distance(p)
         outward = _placed(*(off / r * self.out[:, None])) + _across(x[:, 0] / r)

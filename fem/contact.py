@@ -1,4 +1,14 @@
-"""Contact as a contribution to the potential energy."""
+"""Contact of an actuator's outer surface with a rigid obstacle that is given by its gap.
+
+A point x of the outer surface has the gap g(x): its distance from the obstacle, negative inside
+it. Contact adds the potential sum W eps psi(-g) over Gauss points of the outer faces, W their
+area at rest. Taken at nodes, a uniform pressure would pull at the corners of quadratic faces.
+
+Glossary
+--------
+g, n, H : gap (mm), its gradient (the obstacle's outward normal), its second derivative (1/mm)
+eps : penalty, MPa of contact pressure per mm of depth
+"""
 
 from __future__ import annotations
 
@@ -8,9 +18,9 @@ from functools import cached_property
 import numpy as np
 
 from fem.arrays import BoolArray, FloatArray, IntArray
-from fem.contact.gap import Gap, Obstacle
-from fem.contact.slide import Hold
 from fem.element import face_nodes, gauss, natural_nodes, shape
+from fem.friction import Hold
+from fem.gap import Gap, Obstacle
 from fem.items import Batch
 from fem.material import PAIRS
 from fem.mesh import Mesh
@@ -75,7 +85,7 @@ class Contact:
         Contact pressure that the points have without any depth; see `update`.
     lift : float, mm
         How far the obstacle stands back from its place.
-    hold : fem.contact.slide.Hold, or None
+    hold : fem.friction.Hold, or None
         The state that friction counts the slip from; see `take_hold`.
     """
 

@@ -9,13 +9,13 @@ from dataclasses import replace
 import numpy as np
 
 from fem import blas
+from fem.approach import Approach
 from fem.assembly import System
-from fem.contact.approach import Approach
-from fem.contact.find import Finder, Found
-from fem.contact.gap import Obstacle
-from fem.contact.item import Contact, pressed_of
-from fem.contact.touch import Contacts, Touch
+from fem.contact import Contact, pressed_of
+from fem.downhill import Finder, Found
 from fem.equilibrium import Equilibrium, lagrange, last_work
+from fem.gap import Obstacle
+from fem.grasp import Contacts, Touch
 from fem.sections import Chart, Pose
 from fem.solution import Solution, State, state_of
 
