@@ -72,7 +72,7 @@ def solve_against(
         raise ValueError("pressures must be finite numbers above 0")
     begun = time.perf_counter()
     touching = contact if isinstance(contact, Contact) else Contact(contact)
-    touching.multiplier = touching.hold = None
+    touching.offset = touching.hold = None
     with blas.one_thread():
         run = _Run(free, touching, tolerance, threads, settle=settle)
         try:

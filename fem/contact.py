@@ -81,8 +81,9 @@ class Contact:
 
     Attributes
     ----------
-    multiplier : (L, c, q), MPa, or None
-        Contact pressure that the points have without any depth; see `update`.
+    offset : (L, c, q), mm, or None
+        How far the obstacle stands out at each point, which so presses without any depth: the
+        multiplier over the penalty; see `update`.
     lift : float, mm
         How far the obstacle stands back from its place.
     hold : fem.friction.Hold, or None
@@ -98,16 +99,16 @@ class Contact:
     ) -> None:
         self.obstacle, self.penalty, self.ramp, self.friction = obstacle, penalty, ramp, friction
         self.hold: Hold | None = None
-        self.multiplier: FloatArray | None = None
+        self.offset: FloatArray | None = None
         self.lift = 0.0
 
     def __call__(self, mesh: Mesh) -> _Item:
         """Give an item of a mesh; all items of it share the multipliers."""
         return _Item(self, mesh)
 
-    def pressure(self, distance: FloatArray, multiplier: FloatArray | float) -> FloatArray:
+    def pressure(self, distance: FloatArray, offset: FloatArray | float) -> FloatArray:
         """Contact pressure at points with gaps (...), MPa."""
-        return self.penalty * self._law(multiplier / self.penalty - distance)[1]
+        return self.penalty * self._law(offset - distance)[1]
 
     def _law(self, depth: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """psi, psi' and psi'' at depths: psi'' rises over the ramp from 0 to 1."""
@@ -126,8 +127,8 @@ class Contact:
         points = surface.points(x.reshape(-1, 3))
         gap = self.obstacle.gap(points.reshape(-1, 3))
         depth = -gap.distance.reshape(surface.area.shape) - self.lift
-        if self.multiplier is not None:
-            depth = depth + self.multiplier / self.penalty
+        if self.offset is not None:
+            depth = depth + self.offset
         energy = float((self.penalty * surface.area * self._law(depth)[0]).sum())
         if self.hold is None:
             return energy
@@ -147,11 +148,14 @@ class Contact:
             self.hold = replace(self.hold, bound=bound)
 
     def update(self, pressed: Pressed) -> None:
-        """Take a state's contact pressure for the multipliers.
+        """Let the obstacle stand out so far that a state's contact pressure needs no depth.
 
-        Not beside the clamp, where nothing gives way: there they would grow for ever.
+        Not beside the clamp, where nothing gives way: there the pressure would grow for ever.
         """
-        self.multiplier = np.where(pressed.clamped[:, None, None], 0.0, pressed.pressure)
+        slope = pressed.pressure / self.penalty
+        half = 0.5 * self.ramp
+        out = np.where(slope < half, np.sqrt(2.0 * self.ramp * slope), slope + half)
+        self.offset = np.where(pressed.clamped[:, None, None], 0.0, out)
 
 
 @dataclass(frozen=True)
@@ -196,8 +200,8 @@ def pressed_of(contact: Contact, mesh: Mesh, x: FloatArray) -> Pressed:
     points = surface.points(x.reshape(-1, 3))
     gap = contact.obstacle.gap(points.reshape(-1, 3))
     gap = replace(gap, distance=gap.distance + contact.lift)
-    multiplier = 0.0 if contact.multiplier is None else contact.multiplier
-    pressure = contact.pressure(gap.distance.reshape(surface.area.shape), multiplier)
+    offset = 0.0 if contact.offset is None else contact.offset
+    pressure = contact.pressure(gap.distance.reshape(surface.area.shape), offset)
     drag = np.zeros_like(points) if contact.hold is None else contact.hold.respond(points)[1]
     clamped = mesh.z[:-1] < _CLAMPED * mesh.actuator.diameter
     return Pressed(points, gap, pressure, surface.area, drag, clamped)
@@ -219,8 +223,8 @@ class _Item:
         points = points[faces]  # (f, q, 3)
         gap = contact.obstacle.gap(points.reshape(-1, 3))
         depth = -gap.distance.reshape(points.shape[:2]) - contact.lift
-        if contact.multiplier is not None:
-            depth = depth + contact.multiplier[layers][faces] / contact.penalty
+        if contact.offset is not None:
+            depth = depth + contact.offset[layers][faces]
         weight = contact.penalty * surface.area[layers][faces]  # (f, q)
         psi, slope, curve = contact._law(depth)
         batch.sums.energy += float((weight * psi).sum())

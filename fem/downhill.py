@@ -141,15 +141,15 @@ class Finder:
         for _ in range(_PASSES):
             if pressed.depth <= DEPTH_MM:
                 break
-            before = contact.multiplier
+            before = contact.offset
             contact.update(pressed)
             better = self.find(found.pose, found.pressure, tolerance)
             if better is None:
                 return None
             found, last = better, pressed
             pressed = pressed_of(contact, mesh, found.pose.x)
-            assert contact.multiplier is not None
-            rise = contact.multiplier - (0.0 if before is None else before)
+            assert contact.offset is not None
+            rise = contact.offset - (0.0 if before is None else before)
             mean = 0.5 * (last.pressure + pressed.pressure)
-            work += float((pressed.area * mean * rise).sum()) / contact.penalty
+            work += float((pressed.area * mean * rise).sum())
         return found, work
