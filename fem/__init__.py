@@ -47,7 +47,8 @@ if TYPE_CHECKING:
     from fem.meshsize import DEFAULT_MESH, PAPER_MESH, MeshSize
     from fem.near import solve_near
     from fem.onward import solve_onward
-    from fem.sensitivity import Rate, Sensitivities, flow_to, sensitivities
+    from fem.rates import Rate, Sensitivities, flow_to
+    from fem.sensitivity import rates_by, sensitivities
     from fem.solution import Solution, State
     from fem.solver import solve
     from fem.weight import Weight
@@ -88,6 +89,7 @@ __all__ = [
     "chain",
     "flow_to",
     "law",
+    "rates_by",
     "sensitivities",
     "solve",
     "solve_near",
@@ -127,9 +129,10 @@ _HOMES = {
     "MeshSize": "meshsize",
     "solve_near": "near",
     "solve_onward": "onward",
-    "Rate": "sensitivity",
-    "Sensitivities": "sensitivity",
-    "flow_to": "sensitivity",
+    "Rate": "rates",
+    "Sensitivities": "rates",
+    "flow_to": "rates",
+    "rates_by": "sensitivity",
     "sensitivities": "sensitivity",
     "Solution": "solution",
     "State": "solution",

@@ -13,13 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem.arrays import FloatArray, IntArray
+from fem.arrays import DOUBLE, SINGLE, DType, FloatArray, IntArray
 from fem.deadweight import Deadweight
 from fem.items import ITEMS, MakeItem
 from fem.mesh import Mesh
 from fem.part import Part
 from fem.pattern import Unknowns
-from fem.pivot import Pivot
+from fem.pivot import DoubtfulPivot, Pivot
 from fem.plug import Plug, inner_area
 
 
@@ -80,6 +80,9 @@ class Inverse:
             raise RuntimeError("the tangent has been factored anew since")
 
 
+_Halves = tuple[Part, Part, Pivot]  # from the root, from the tip, and the ring between them
+
+
 class System:
     """The equations of one mesh.
 
@@ -91,9 +94,19 @@ class System:
     threads : {1, 2}
     extra : sequence of MakeItem
         What contributes to the energy beside `fem.items.ITEMS` and the actuator's weight.
+    single : bool
+        Factor tangents in single precision where double is not asked for, until a pivot of one is
+        not positive. Forces and energies are in double in any case.
     """
 
-    def __init__(self, mesh: Mesh, threads: int = 2, extra: Sequence[MakeItem] = ()) -> None:
+    def __init__(
+        self,
+        mesh: Mesh,
+        threads: int = 2,
+        extra: Sequence[MakeItem] = (),
+        *,
+        single: bool = False,
+    ) -> None:
         self.mesh, self.extra = mesh, tuple(extra)
         self.unknowns = Unknowns.of(mesh)
         self.plug = Plug(mesh)
@@ -101,12 +114,23 @@ class System:
         middle = mesh.layers // 2
         own = () if mesh.actuator.weight is None else (Deadweight,)
         self.middle, items = middle, (*ITEMS, *own, *extra)
-        self._parts = (
-            Part(mesh, self.unknowns, range(middle), items, from_root=True),
-            Part(mesh, self.unknowns, range(middle, mesh.layers), items, from_root=False),
-        )
-        self._last = Pivot(len(self.unknowns.ring) if middle > 0 else 0)
+        self._items, self._single = items, single
+        self._halves: dict[DType, _Halves] = {}
+        self._parts: tuple[Part, ...] = ()
+        self._use(DOUBLE if not single else SINGLE)
         self._pool = ThreadPoolExecutor(1) if threads > 1 else None
+
+    def _use(self, dtype: DType) -> None:
+        """Go on with a tangent of a precision."""
+        if dtype not in self._halves:
+            mesh, middle, u = self.mesh, self.middle, self.unknowns
+            root = Part(mesh, u, range(middle), self._items, from_root=True, dtype=dtype)
+            tip = Part(
+                mesh, u, range(middle, mesh.layers), self._items, from_root=False, dtype=dtype
+            )
+            self._halves[dtype] = (root, tip, Pivot(len(u.ring) if middle > 0 else 0, dtype))
+        root, tip, self._last = self._halves[dtype]
+        self._parts = (root, tip)
 
     def close(self) -> None:
         """Let the second thread go."""
@@ -138,16 +162,30 @@ class System:
         self._both(lambda part: part.evaluate(x, 0.0, None), alone=True)
         return self._gather(x)
 
-    def factor(self, x: FloatArray, pressure: float) -> tuple[Forces, Inverse | None]:
-        """Give forces and factored tangent at x under a pressure, MPa; None where least_J <= 0."""
+    def factor(
+        self, x: FloatArray, pressure: float, *, double: bool = True
+    ) -> tuple[Forces, Inverse | None]:
+        """Give forces and factored tangent at x under a pressure, MPa; None where least_J <= 0.
+
+        ``double``: not in single precision, where the step has an error of a tenth and more along
+        the soft bending of a long tube.
+        """
         self.version += 1
+        self._use(SINGLE if self._single and not double else DOUBLE)
+        try:
+            forces = self._factor(x, pressure)
+        except DoubtfulPivot:
+            self._single = False
+            self._use(DOUBLE)
+            forces = self._factor(x, pressure)
+        return forces, Inverse(self, self.version) if forces.least_J > 0.0 else None
+
+    def _factor(self, x: FloatArray, pressure: float) -> Forces:
         self._both(lambda part: part.evaluate(x, pressure, self.plug))
         forces = self._gather(x)
-        if not forces.least_J > 0.0:
-            return forces, None
-        if self.middle > 0:
+        if forces.least_J > 0.0 and self.middle > 0:
             self._last.factorise(self._parts[0].next, self._parts[1].next)
-        return forces, Inverse(self, self.version)
+        return forces
 
     def _gather(self, x: FloatArray) -> Forces:
         ours, theirs = (part.sums for part in self._parts)
@@ -192,11 +230,11 @@ class System:
         (s, s)
         """
         mesh = self.mesh
-        nodal = np.zeros((len(layers), 2 * mesh.ring + mesh.mid, 3))
+        nodal = np.zeros((len(layers), 2 * mesh.ring + mesh.mid, 3), self._last.factor.dtype)
         nodal[np.arange(len(layers))[:, None], mesh.outer[around]] = units
         loads = nodal.reshape(len(layers), -1)
         result = np.zeros((len(layers), len(layers)))
-        T = self.plug.motions(x)
+        T = self.plug.motions(x).astype(nodal.dtype)
         rest: dict[Part, tuple[IntArray, FloatArray]] = {}
 
         def reduce(part: Part) -> None:
@@ -242,7 +280,8 @@ class System:
 
     def solve(self, rhs: FloatArray, *, positive: bool = False) -> FloatArray:
         """Solve with the present factorisation for rhs (k, count); see `Inverse.solve`."""
-        out = np.array(rhs)
+        dtype = self._last.factor.dtype
+        out = np.array(rhs, dtype)
         rings, mids, plug = self.split(out)
         carry: dict[Part, FloatArray] = {}
 
@@ -250,7 +289,7 @@ class System:
             carry[part] = part.forward(rings, mids, plug)
 
         self._both(forward)
-        middle = np.zeros((len(out), 0))
+        middle = np.zeros((len(out), 0), dtype)
         if self.middle > 0:
             middle = rings[:, self.middle - 1] - sum(carry.values())
             self._last.forward(middle)
@@ -259,4 +298,4 @@ class System:
             self._last.backward(middle)
             rings[:, self.middle - 1] = middle
         self._both(lambda part: part.backward(rings, mids, plug, middle, positive=positive))
-        return out
+        return out.astype(DOUBLE, copy=False)

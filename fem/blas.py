@@ -1,4 +1,4 @@
-"""Dense kernels that let other threads run, and BLAS kept to one thread.
+"""Dense kernels in double or single precision that let other threads run; BLAS on one thread.
 
 numpy lets go of the interpreter's lock in products; scipy's wrappers of Cholesky and triangular
 solves do not, so these are called through the pointers that scipy exports (see the
@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from fem.arrays import FloatArray
+from fem.arrays import SINGLE, FloatArray
 
 
 @cache
@@ -40,8 +40,14 @@ def _kernel(module: str, name: str, arguments: int) -> Callable[..., None]:
 
 _STRIDE = ctypes.c_int(1)
 _FEW = 3  # right sides up to which one at a time is quicker
-_ONE, _MINUS = ctypes.c_double(1.0), ctypes.c_double(-1.0)
+_ONE = {"d": ctypes.c_double(1.0), "s": ctypes.c_float(1.0)}
+_MINUS = {"d": ctypes.c_double(-1.0), "s": ctypes.c_float(-1.0)}
 _ref = ctypes.byref
+
+
+def _letter(A: FloatArray) -> str:
+    """Give the letter of the kernels for an array's precision."""
+    return "s" if A.dtype == SINGLE else "d"
 
 
 def cholesky(A: FloatArray) -> bool:
@@ -53,7 +59,9 @@ def cholesky(A: FloatArray) -> bool:
         Whether A is positive definite; it is spoilt where it is not.
     """
     n, info = ctypes.c_int(len(A)), ctypes.c_int()
-    _kernel("cython_lapack", "dpotrf", 5)(b"L", _ref(n), A.ctypes.data, _ref(n), _ref(info))
+    _kernel("cython_lapack", f"{_letter(A)}potrf", 5)(
+        b"L", _ref(n), A.ctypes.data, _ref(n), _ref(info)
+    )
     return info.value == 0
 
 
@@ -62,9 +70,9 @@ def solve_lower(U: FloatArray, B: FloatArray) -> None:
     if B.size == 0:
         return
     # C order is LAPACK's transpose: B^T U^-1 with a lower triangle there.
-    n, m = ctypes.c_int(B.shape[0]), ctypes.c_int(B.shape[1])
-    _kernel("cython_blas", "dtrsm", 11)(
-        b"R", b"L", b"T", b"N", _ref(m), _ref(n), _ref(_ONE),
+    n, m, letter = ctypes.c_int(B.shape[0]), ctypes.c_int(B.shape[1]), _letter(B)
+    _kernel("cython_blas", f"{letter}trsm", 11)(
+        b"R", b"L", b"T", b"N", _ref(m), _ref(n), _ref(_ONE[letter]),
         U.ctypes.data, _ref(n), B.ctypes.data, _ref(m),
     )  # fmt: skip
 
@@ -73,15 +81,15 @@ def solve_rows(U: FloatArray, rows: FloatArray, transposed: bool) -> None:
     """Overwrite every row r of rows (k, n) with U^-T r, or U^-1 r where ``transposed``."""
     if rows.size == 0:
         return
-    n, k = ctypes.c_int(rows.shape[1]), ctypes.c_int(rows.shape[0])
+    n, k, letter = ctypes.c_int(rows.shape[1]), ctypes.c_int(rows.shape[0]), _letter(rows)
     side = b"T" if transposed else b"N"
     if k.value <= _FEW:
-        solve = _kernel("cython_blas", "dtrsv", 8)
+        solve = _kernel("cython_blas", f"{letter}trsv", 8)
         for row in rows:
             solve(b"L", side, b"N", _ref(n), U.ctypes.data, _ref(n), row.ctypes.data, _ref(_STRIDE))
         return
-    _kernel("cython_blas", "dtrsm", 11)(
-        b"L", b"L", side, b"N", _ref(n), _ref(k), _ref(_ONE),
+    _kernel("cython_blas", f"{letter}trsm", 11)(
+        b"L", b"L", side, b"N", _ref(n), _ref(k), _ref(_ONE[letter]),
         U.ctypes.data, _ref(n), rows.ctypes.data, _ref(n),
     )  # fmt: skip
 
@@ -90,10 +98,10 @@ def subtract_gram(C: FloatArray, B: FloatArray) -> None:
     """Take B^T B from the upper triangle of C (m, m), for B (n, m)."""
     if B.size == 0:
         return
-    n, m = ctypes.c_int(B.shape[0]), ctypes.c_int(B.shape[1])
-    _kernel("cython_blas", "dsyrk", 10)(
-        b"L", b"N", _ref(m), _ref(n), _ref(_MINUS),
-        B.ctypes.data, _ref(m), _ref(_ONE), C.ctypes.data, _ref(m),
+    n, m, letter = ctypes.c_int(B.shape[0]), ctypes.c_int(B.shape[1]), _letter(B)
+    _kernel("cython_blas", f"{letter}syrk", 10)(
+        b"L", b"N", _ref(m), _ref(n), _ref(_MINUS[letter]),
+        B.ctypes.data, _ref(m), _ref(_ONE[letter]), C.ctypes.data, _ref(m),
     )  # fmt: skip
 
 

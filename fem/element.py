@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fem.arrays import FloatArray
+from fem.arrays import SINGLE, FloatArray
 
 Kind = Literal["hex20", "hex8"]
 
@@ -108,6 +108,11 @@ class Reference:
         dN = self.dN.reshape(c, 3, q, n)
         products = np.einsum("cq,cjqa,clqb->cjlqab", self.weights, dN, dN, optimize=True)
         return np.ascontiguousarray(products.reshape(c, 9 * q, n * n))
+
+    @cached_property
+    def single_pairs(self) -> FloatArray:
+        """The products in single precision."""
+        return self.pairs.astype(SINGLE)
 
 
 def reference(kind: Kind, X: ArrayLike, orders: tuple[int, int, int]) -> Reference:

@@ -121,7 +121,7 @@ class _Way:
 
     def _corrected(self, mesh: Mesh, flow: FloatArray | None, threads: int) -> Correction:
         chart = Chart(mesh)
-        system = System(mesh, threads, self._extra)
+        system = System(mesh, threads, self._extra, single=True)
         try:
             if flow is None or not alike(mesh, self._mesh):
                 start = transfer(self._mesh, self._x, mesh)

@@ -17,6 +17,8 @@ Outcome = Literal["converged", "residual", "inverted"]
 _MOST = 10  # factorisations after which it gives up
 _HOPELESS = 1e6  # so does it when the residual has grown this much
 _DAMPINGS = 4
+_TIGHT, _NEAR = 1e-4, 1e-3  # a tolerance below the one takes double precision below the other
+_SURE = 0.01  # of such a tolerance, after a step in single precision
 _DESCENTS = 60  # factorisations
 _TURN = 0.3  # rad, the most that a section turns in one step downhill
 _DECREASE = 1e-4  # of the energy, over what its slope promises
@@ -90,15 +92,17 @@ def correct(
     outcome: Outcome = "residual"
     first = residual = np.inf
     factored = iterations = 0
+    tight, enough = tolerance < _TIGHT, tolerance
     while factored < _MOST:
-        forces, inverse = system.factor(pose.x, pressure)
+        double = tight and residual < _NEAR
+        forces, inverse = system.factor(pose.x, pressure, double=double)
         factored += 1
         if inverse is None:
             outcome = "inverted"
             break
         residual = relative_residual(forces, pressure, volume)
         first = residual if factored == 1 else first
-        if residual <= tolerance:
+        if residual <= enough:
             outcome = "converged"
             break
         moved = _step(system, chart, pose, pressure, forces, inverse, volume)
@@ -107,8 +111,10 @@ def correct(
             break
         pose, pressure, forces = moved
         iterations += 1
+        # A soft motion that a step in single precision left over hardly shows in the residual.
+        enough = _SURE * tolerance if tight and not double else tolerance
         residual = relative_residual(forces, pressure, volume)
-        if residual <= tolerance:
+        if residual <= enough:
             outcome = "converged"
             break
         if not residual < _HOPELESS * max(first, 1.0):

@@ -67,7 +67,7 @@ def solve_onward(
     if not pressure > last:
         raise ValueError(f"the run has come to {last:g} MPa already, not below {pressure:g}")
     with blas.one_thread():
-        system = System(known.mesh, threads, extra)
+        system = System(known.mesh, threads, extra, single=True)
         try:
             way = _Way(system, known, options)
             failed = not way.go(pressure)

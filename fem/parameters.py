@@ -6,8 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from fem.actuator import Actuator, Window
+from fem.material import Constant, bulk_modulus, law
 
 ANGLE_STEP, LENGTH_STEP, SHARE_STEP = 1e-5, 1e-4, 1e-4  # of the differences: rad, mm, 1
+POISSON_STEP = 1e-6  # it counts by its distance from a half
 
 
 @dataclass(frozen=True)
@@ -49,6 +51,45 @@ def families(
         wall, gauze = (LENGTH_STEP, _thicken), (SHARE_STEP, _stiffen)
         together += tuple((Parameter(None, step, change),) for step, change in (wall, gauze))
     return tuple((p,) for family in together for p in family) if apart else together
+
+
+def rubber_constant(name: str) -> Parameter:
+    """By a number of the rubber's law, as a share of itself; the other numbers are kept."""
+
+    def change(actuator: Actuator, share: float) -> Actuator:
+        number = actuator.rubber.constants[name]
+        if isinstance(number, tuple):
+            raise ValueError(f"{name} of {actuator.rubber.name} is not one number")
+        return _with_rubber(actuator, **{name: (1.0 + share) * number})
+
+    return Parameter(None, SHARE_STEP, change)
+
+
+def poisson() -> Parameter:
+    """By Poisson's ratio of the rubber at small strain, all constants but K kept."""
+
+    def change(actuator: Actuator, amount: float) -> Actuator:
+        mu, K = actuator.rubber.shear_modulus, actuator.rubber.bulk_modulus
+        nu = (3.0 * K - 2.0 * mu) / (6.0 * K + 2.0 * mu)
+        return _with_rubber(actuator, K=bulk_modulus(mu, nu + amount))
+
+    return Parameter(None, POISSON_STEP, change)
+
+
+def alpha_center(number: int) -> Parameter:
+    """By the middle of a window's uncut sector; of a whole tube only, not of a half model."""
+
+    def change(actuator: Actuator, amount: float) -> Actuator:
+        windows = list(actuator.windows)
+        windows[number] = replace(windows[number], center=windows[number].center + amount)
+        return replace(actuator, windows=tuple(windows))
+
+    return Parameter(None, ANGLE_STEP, change)
+
+
+def _with_rubber(actuator: Actuator, **constants: Constant) -> Actuator:
+    rubber = actuator.rubber
+    return replace(actuator, rubber=law(rubber.name, {**rubber.constants, **constants}))
 
 
 def _thicken(actuator: Actuator, amount: float) -> Actuator:

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from fem.arrays import FloatArray, IntArray
+from fem.arrays import DOUBLE, DType, FloatArray, IntArray
 from fem.items import Batch, MakeItem, Sums
 from fem.mesh import Mesh
 from fem.pattern import Pattern, Unknowns, make_pattern
@@ -28,6 +28,8 @@ class Part:
         Reduced couplings to the ring ahead.
     next : (far, far)
         What has been added to the next pivot, its upper triangle.
+    dtype : dtype
+        Of the tangent; all else is in double precision.
     items : tuple of Item
         What contributes to the energy.
     stiffness : (through, 6, around, column)
@@ -44,7 +46,9 @@ class Part:
         items: Sequence[MakeItem],
         *,
         from_root: bool,
+        dtype: DType = DOUBLE,
     ) -> None:
+        self.dtype = dtype
         self.mesh, self.unknowns, self.from_root = mesh, unknowns, from_root
         self.order = layers if from_root else layers[::-1]
         n = mesh.bricks.shape[1]
@@ -63,18 +67,20 @@ class Part:
         self.patterns = dict.fromkeys(self.order, plain)
         if from_root and layers:
             self.patterns[0] = pattern(clamped=True)
-        self.scratch = {p: np.empty(len(p.first)) for p in set(self.patterns.values())}
+        self.scratch = {p: np.empty(len(p.first), dtype) for p in set(self.patterns.values())}
         # As many zeros behind the stiffness as the last layer's view reaches beyond it.
         shape = (mesh.size.through, 6, mesh.around, self.column)
-        self.entries = np.zeros(math.prod(shape) + self.column + 1)
+        self.entries = np.zeros(math.prod(shape) + self.column + 1, dtype)
         self.stiffness = self.entries[: math.prod(shape)].reshape(shape)
         sizes = {
             layer: p.block + (unknowns.plug - p.behind if self._is_plug(layer) else 0)
             for layer, p in self.patterns.items()
         }
-        self.pivots = {layer: Pivot(size) for layer, size in sizes.items()}
-        self.couplings = {layer: np.empty((size, plain.far)) for layer, size in sizes.items()}
-        self.next = np.zeros((plain.far, plain.far))
+        self.pivots = {layer: Pivot(size, dtype) for layer, size in sizes.items()}
+        self.couplings = {
+            layer: np.empty((size, plain.far), dtype) for layer, size in sizes.items()
+        }
+        self.next = np.zeros((plain.far, plain.far), dtype)
 
     def _is_plug(self, layer: int) -> bool:
         return layer == self.mesh.layers - 1
@@ -127,7 +133,7 @@ class Part:
 
     def forward(self, rings: FloatArray, mids: FloatArray, plug: FloatArray) -> FloatArray:
         """Reduce right sides in place; return what to take from the middle ring's (k, far)."""
-        carry = np.zeros((len(rings), self.next.shape[0]))
+        carry = np.zeros((len(rings), self.next.shape[0]), self.dtype)
         for layer in self.order:
             rows = self._rows(layer, rings, mids, plug)
             if self.patterns[layer].behind and not self._is_plug(layer):
@@ -168,30 +174,33 @@ class Part:
 
         ``loads`` (s, 3 nodes of a layer), ``T`` the motions of the last ring by the plug's.
         """
-        active = np.zeros(0, dtype=np.int64)
-        ahead = np.zeros((0, self.next.shape[0]))
+        # In the order of elimination, so that those under way are always the first ones.
+        groups = [np.flatnonzero(layers == layer) for layer in self.order]
+        which = np.concatenate([np.zeros(0, dtype=np.int64), *groups])
+        shares = np.zeros((len(which), len(which)))
+        ahead = np.zeros((0, self.next.shape[0]), self.dtype)
         own_mids = len(self.unknowns.mid)
-        for layer in self.order:
-            pattern = self.patterns[layer]
-            fresh = np.flatnonzero(layers == layer)
-            if len(active) + len(fresh) == 0:
+        for layer, fresh in zip(self.order, groups, strict=True):
+            pattern, before = self.patterns[layer], len(ahead)
+            count = before + len(fresh)
+            if count == 0:
                 continue
             pivot = self.pivots[layer]
-            rows = np.zeros((len(active) + len(fresh), len(pivot.factor)))
-            if len(active):
-                rows[: len(active), own_mids:] = ahead
+            rows = np.zeros((count, len(pivot.factor)), self.dtype)
+            if before:
+                rows[:before, own_mids:] = ahead
             own = loads[fresh][:, pattern.block_nodes]
             if self._is_plug(layer):
-                rows[len(active) :, :own_mids] = own[:, :own_mids]
-                rows[len(active) :, own_mids:] = loads[fresh][:, -T.shape[0] :] @ T
+                rows[before:, :own_mids] = own[:, :own_mids]
+                rows[before:, own_mids:] = loads[fresh][:, -T.shape[0] :] @ T
             else:
-                rows[len(active) :] = own
+                rows[before:] = own
             pivot.forward(rows)
-            active = np.concatenate([active, fresh])
-            result[np.ix_(active, active)] += rows @ rows.T
+            shares[:count, :count] += rows @ rows.T
             ahead = -(rows @ self.couplings[layer])
-            ahead[len(active) - len(fresh) :] += loads[fresh][:, pattern.far_nodes]
-        return active, ahead
+            ahead[before:] += loads[fresh][:, pattern.far_nodes]
+        result[np.ix_(which, which)] += shares
+        return which, ahead
 
     def _behind(self, layer: int, rings: FloatArray, plug: FloatArray) -> FloatArray | None:
         if self._is_plug(layer):

@@ -5,7 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from fem import blas
-from fem.arrays import FloatArray
+from fem.arrays import DOUBLE, DType, FloatArray
+
+
+class DoubtfulPivot(ArithmeticError):
+    """A pivot in single precision is not positive: in double it may be, or is known to be not."""
 
 
 class Pivot:
@@ -13,10 +17,11 @@ class Pivot:
 
     L is the Cholesky factor in the usual case. Where A is indefinite, its eigenvalues take its
     place: L = Q |E|^(1/2), S = sign(E). They tell how many directions are unstable.
+    In single precision nobody can tell, and `DoubtfulPivot` is raised.
     """
 
-    def __init__(self, n: int) -> None:
-        self.factor = np.empty((n, n))
+    def __init__(self, n: int, dtype: DType = DOUBLE) -> None:
+        self.factor = np.empty((n, n), dtype)
         self.signs: FloatArray | None = None
 
     def factorise(self, A: FloatArray, last: FloatArray) -> None:
@@ -24,6 +29,8 @@ class Pivot:
         self.signs = None
         self._sum(A, last)
         if len(A) and not blas.cholesky(self.factor):
+            if self.factor.dtype != DOUBLE:
+                raise DoubtfulPivot
             self._sum(A, last)
             self._decompose(np.triu(self.factor) + np.triu(self.factor, 1).T)
 

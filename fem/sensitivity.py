@@ -9,7 +9,6 @@ its own segment of the tube alone, one pair of forces serves all joints.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,100 +21,8 @@ from fem.errors import FemError
 from fem.items import MakeItem
 from fem.mesh import Mesh, alike, make_mesh, remesh
 from fem.parameters import LENGTH_STEP, Parameter, families
+from fem.rates import Rate, Sensitivities
 from fem.transfer import settle
-
-
-@dataclass(frozen=True)
-class Rate:
-    """Derivatives by one parameter.
-
-    Attributes
-    ----------
-    theta : (joints,) rad per unit
-    facing : (layers + 1, 3) mm per unit
-        Of the object-facing line at the rings, which move along the tube with the parameter.
-    z : (layers + 1,) mm per unit
-        Of the rings' places along the tube.
-    volume : float, mm^3 per unit
-    moved : (layers + 1, ring + mid, 3) mm per unit
-        Of all nodes, which move along the tube with the parameter.
-    """
-
-    theta: FloatArray
-    facing: FloatArray
-    z: FloatArray
-    volume: float
-    moved: FloatArray
-
-    def __neg__(self) -> Rate:
-        """By the parameter with its sign changed."""
-        return Rate(*(-value for value in vars(self).values()))
-
-    def plus(self, other: Rate, factor: float) -> Rate:
-        """By this parameter and a multiple of another one together."""
-        pairs = zip(vars(self).values(), vars(other).values(), strict=True)
-        return Rate(*(one + factor * more for one, more in pairs))
-
-
-@dataclass(frozen=True)
-class Sensitivities:
-    """Derivatives of one state by its inputs.
-
-    Attributes
-    ----------
-    pressure : Rate, per MPa
-    alpha : tuple of Rate, per rad
-        By each joint's alpha_closed.
-    openF : tuple of Rate, per mm
-        By each cut's length, the wrapped lengths kept.
-    wrapped : tuple of Rate, per mm
-        By the length of each wrapped sector, the cuts' lengths kept; the first is the root's.
-    wall : Rate, per mm
-        By the wall's thickness, the outer diameter kept.
-    gauze : Rate, per share of itself
-        By the threads' stiffness.
-    """
-
-    pressure: Rate
-    alpha: tuple[Rate, ...]
-    openF: tuple[Rate, ...]
-    wrapped: tuple[Rate, ...]
-    wall: Rate
-    gauze: Rate
-
-    def rubber(self, pressure: float) -> Rate:
-        """Give derivatives by the rubber's stiffness, per share of itself, at a pressure in MPa.
-
-        By dimensional analysis: rubber, gauze and pressure in proportion give the same shape.
-        Where gravity or the like acts as well, its share is left out.
-        """
-        return (-self.gauze).plus(self.pressure, -pressure)
-
-
-def flow_to(rates: Sensitivities, known: Actuator, new: Actuator, rise: float) -> FloatArray:
-    """Motion of the nodes from a known actuator to a similar one, to first order, mm.
-
-    Parameters
-    ----------
-    rates : Sensitivities
-        Of the known actuator's state.
-    known, new : Actuator
-        With as many windows, and the same but for lengths and angles.
-    rise : float
-        Of the pressure, MPa.
-
-    Returns
-    -------
-    (layers + 1, ring + mid, 3)
-    """
-    flow = rise * rates.pressure.moved
-    for rate, v, w in zip(rates.alpha, known.windows, new.windows, strict=True):
-        flow = flow + (w.alpha - v.alpha) * rate.moved
-    for rate, v, w in zip(rates.openF, known.windows, new.windows, strict=True):
-        flow = flow + (w.openF - v.openF) * rate.moved
-    for rate, (a, b), (c, d) in zip(rates.wrapped, known.wrapped, new.wrapped, strict=True):
-        flow = flow + ((d - c) - (b - a)) * rate.moved
-    return flow
 
 
 def _unknown(like: Rate) -> Rate:
@@ -176,6 +83,52 @@ def sensitivities(
         Where the tangent is singular or the positions are no equilibrium.
     """
     count = len(mesh.actuator.windows)
+    changes = families(count, apart=bool(extra), tube=tube)  # see `_pulls`
+    rates = _rates(mesh, x, pressure, changes, threads, angles, extra)
+    return _by_parameter(rates, count)
+
+
+def rates_by(
+    mesh: Mesh,
+    x: FloatArray,
+    pressure: float,
+    parameters: Sequence[Parameter],
+    threads: int = 2,
+    extra: Sequence[MakeItem] = (),
+) -> tuple[Rate, ...]:
+    """Differentiate an equilibrium by parameters of the caller's choice.
+
+    Parameters
+    ----------
+    mesh, x, pressure, threads, extra
+        As in `sensitivities`.
+    parameters : sequence of Parameter
+        Such as `fem.parameters.rubber_constant`, `poisson` and `alpha_center`.
+
+    Returns
+    -------
+    tuple of Rate
+        By each parameter, with angles and volume.
+
+    Raises
+    ------
+    FemError
+        As `sensitivities` does.
+    """
+    changes = [(parameter,) for parameter in parameters]
+    return tuple(_rates(mesh, x, pressure, changes, threads, True, extra)[1:])
+
+
+def _rates(
+    mesh: Mesh,
+    x: FloatArray,
+    pressure: float,
+    changes: Sequence[Sequence[Parameter]],
+    threads: int,
+    angles: bool,
+    extra: Sequence[MakeItem],
+) -> list[Rate]:
+    """Differentiate by the pressure, and by families of parameters."""
     with blas.one_thread():
         system = System(mesh, threads, extra)
         try:
@@ -185,17 +138,15 @@ def sensitivities(
             push = pressure * np.linalg.norm(forces.volume_gradient)
             if np.linalg.norm(forces.residual(pressure)) > 1e-4 * push:
                 raise FemError("these positions are not in equilibrium")
-            changes = families(count, apart=bool(extra), tube=tube)  # see `_pulls`
             rhs = [forces.volume_gradient]
             for family in changes:
                 rhs += _pulls(system, x, pressure, family)
             flows = inverse.solve(np.array(rhs))
             every = [None, *(change for family in changes for change in family)]
-            rates = [
+            return [
                 _rate(system, x, forces, du, change, angles)
                 for du, change in zip(flows, every, strict=True)
             ]
-            return _by_parameter(rates, count)
         finally:
             system.close()
 

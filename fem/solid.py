@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem.arrays import FloatArray
+from fem.arrays import DOUBLE, SINGLE, DType, FloatArray
 from fem.element import Reference
 from fem.material import PAIRS, Kinematics, Law, kinematics
 
@@ -18,12 +18,12 @@ class Workspace:
     def __init__(self) -> None:
         self._arrays: dict[str, FloatArray] = {}
 
-    def get(self, name: str, shape: tuple[int, ...]) -> FloatArray:
+    def get(self, name: str, shape: tuple[int, ...], dtype: DType = DOUBLE) -> FloatArray:
         """Return an array of this shape; its content is whatever was left in it."""
         size = math.prod(shape)
         held = self._arrays.get(name)
-        if held is None or held.size < size:
-            held = self._arrays[name] = np.empty(size)
+        if held is None or held.size < size or held.dtype != dtype:
+            held = self._arrays[name] = np.empty(size, dtype)
         return held[:size].reshape(shape)
 
 
@@ -69,12 +69,12 @@ def respond(
         Current nodal positions, mm.
     work : Workspace
     stiffness : (6, c, L, n * n) N/mm, optional
-        Takes the stiffness for the pairs (i, k) of `fem.material.PAIRS`, where it is wanted.
+        Takes the stiffness for the pairs (i, k) of `fem.material.PAIRS`, where it is wanted, in
+        its own precision.
     mean_dilatation : bool
         Take the volume change from each brick's mean (Simo, Taylor and Pister 1985).
     """
-    _, c, _, L = x.shape
-    q = reference.weights.shape[1]
+    c, q, L = *reference.weights.shape, x.shape[3]
     stretch_z = 2.0 / heights
     # Memory runs (i, column, j, point, layer), so that products see whole matrices.
     gradient = work.get("gradient", (3, c, 3 * q, L))
@@ -91,17 +91,19 @@ def respond(
     P = rubber.stress(k, p, out=np.moveaxis(stresses, 1, 2))
     P[:, :2] *= 0.5 * heights  # the third column's 2 / h and the volume's h / 2 cancel
     across = np.swapaxes(reference.weighted, 1, 2)
-    force = across @ stresses.reshape(3, c, 3 * q, L)
-    state = SolidState(energy, force, least)
+    state = SolidState(energy, across @ stresses.reshape(3, c, 3 * q, L), least)
     if stiffness is None:
         return state
-    moduli = work.get("tangent", (6, c, 3, 3, q, L))
+    H, pairs = k.H, reference.pairs
+    if stiffness.dtype == SINGLE:
+        k, p, pairs = k.single(), p.astype(SINGLE), reference.single_pairs
+    moduli = work.get("tangent", (6, c, 3, 3, q, L), stiffness.dtype)
     A = rubber.tangent(k, p, local_bulk, out=np.moveaxis(moduli, 1, 3))
     A[:, :2, :2] *= 0.5 * heights
     A[:, 2, 2] *= stretch_z
-    np.matmul(np.swapaxes(moduli.reshape(6, c, 9 * q, L), 2, 3), reference.pairs, out=stiffness)
+    np.matmul(np.swapaxes(moduli.reshape(6, c, 9 * q, L), 2, 3), pairs, out=stiffness)
     if mean_bulk is not None:
-        _stiffen(stiffness, across, k.H, heights, mean_bulk)
+        _stiffen(stiffness, across, H, heights, mean_bulk)
     return state
 
 

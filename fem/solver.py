@@ -81,7 +81,7 @@ def solve_mesh(
         raise ValueError("pressures must be finite numbers, 0 or above")
     begun = time.perf_counter()
     with blas.one_thread():
-        system = System(mesh, threads, extra)
+        system = System(mesh, threads, extra, single=True)
         try:
             return _inflate(system, asked, options, progress, begun)
         finally:

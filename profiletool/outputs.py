@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from profiletool.errors import Unsure
 from profiletool.files.design_json import to_json
 from profiletool.pipeline import Result
 from profiletool.profile.shape_csv import shape_csv
@@ -17,7 +16,6 @@ from profiletool.records.design import Design
 from profiletool.records.options import in_flags
 from profiletool.records.seal import proven, sealed
 from profiletool.records.units import FloatArray
-from profiletool.report.candidates import draw_candidates
 from profiletool.report.deck import DECK_FILES, DeckOutput
 from profiletool.report.dossier import dossier_of, formula_marks
 from profiletool.report.error import error_figure
@@ -238,11 +236,6 @@ def deck_files(output: DeckOutput) -> dict[str, bytes]:
 def grip_files(output: GripOutput) -> dict[str, bytes]:
     """Make the files of a finger on its object: name to content."""
     return written(GRIP_FILES, output)
-
-
-def candidates_png(unsure: Unsure) -> bytes:
-    """Draw what the object could be, for a user who is asked to say."""
-    return draw_candidates(unsure.rgb, unsure.candidates)
 
 
 def _in_flags(result: Result) -> Result:

@@ -21,13 +21,17 @@ from profiletool.records.picture import Scale
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request
 from profiletool.records.seal import sealed
+from profiletool.records.way import WaysOut
 from profiletool.subject.find import Subject, find_subject
+from profiletool.verdict.around import with_neighbours
 from profiletool.verdict.draft import Draft, attempt_of
 from profiletool.verdict.holds import holding
 from profiletool.verdict.missed import Missed
 from profiletool.verdict.notes import notes_of
 from profiletool.verdict.reasons import misses_of, reasons_of
 from profiletool.verdict.summary import headline, summary
+from profiletool.verdict.trials import Situation
+from profiletool.verdict.ways import refused, ways_out
 from profiletool.verify.check import Check, check
 from profiletool.verify.errors import with_errors
 from profiletool.verify.forward import FeForwardModel
@@ -62,10 +66,13 @@ class Result(Draft):
         Why the design is infeasible; none where it is feasible.
     misses : tuple of Missed
         Stretches of the profile that the best known shape is far off.
+    ways : WaysOut or None
+        What trials of other options came to; None where the design is feasible.
     """
 
     reasons: tuple[str, ...]
     misses: tuple[Missed, ...]
+    ways: WaysOut | None = None
 
     def __str__(self) -> str:
         """Joints, distances off the profile, verdict and notes."""
@@ -120,13 +127,23 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
     progress = progress or _silent
     progress(0.0)
     subject = find_subject(request, say)
-    attempt = _attempt(request, subject, formula, say, progress)
+    bend = _bend(say) if request.verify else None
+    with refused(Situation(request, subject, formula, None), say, bend):
+        attempt = _attempt(request, subject, formula, say, progress)
     lower = _lower(attempt)
     if lower is not None:
         say(f"once more below {lower.tube.max_pressure_bar:.2f} bar, where FE is stable")
         second = _attempt(lower, subject, formula, say, progress)
         attempt = second if second.design.verified else attempt
-    return _judged(_with_errors(replace(attempt, request=request), say))
+    result = _judged(with_neighbours(_with_errors(replace(attempt, request=request), say)))
+    if not result.reasons:
+        return result
+    fit = result.design.fit
+    reached = (fit.fe or fit.response or fit.formula).rms_mm
+    ways = ways_out(Situation(request, subject, formula, reached), say, bend)
+    first = len(result.reasons)
+    notes = (*result.reasons, str(ways), *result.design.warnings[first:])
+    return replace(result, ways=ways, design=sealed(replace(result.design, warnings=notes)))
 
 
 def run_again(
@@ -138,6 +155,7 @@ def run_again(
     *,
     edit: Edit | None = None,
     refine: bool = False,
+    pressure_bar: float | None = None,
 ) -> Result:
     """Take a design up again: change or correct it where asked, verify it and judge it anew.
 
@@ -153,7 +171,9 @@ def run_again(
     edit : Edit, optional
         A change by hand.
     refine : bool
-        Whether finite elements correct the joints, in whole threads and millimetres.
+        Whether finite elements correct the joints, in numbers that can be built.
+    pressure_bar : float, optional
+        That they are to work at, then.
 
     Raises
     ------
@@ -162,7 +182,7 @@ def run_again(
         bends out of the plane.
     """
     design = design if edit is None else edited(design, edit)
-    request = request_again(design, profile, refine)
+    request = request_again(design, profile, refine, pressure_bar)
     check_request(request)
     source = design.source
     subject = Subject(None, None, Scale(source.mm_per_px or 1.0, "vector"), None, profile)
@@ -177,6 +197,15 @@ def run_again(
     return _judged(_with_errors(made, say))
 
 
+def _bend(say: Callable[[str], None]) -> Callable[[Request, Subject], Draft]:
+    """Give what designs by finite elements for a trial of other options."""
+
+    def bend(request: Request, subject: Subject) -> Draft:
+        return _attempt(request, subject, formula_for(request), say, _silent)
+
+    return bend
+
+
 def _attempt(
     request: Request,
     subject: Subject,
@@ -187,7 +216,7 @@ def _attempt(
     profile = subject.profile
     if request.method == "optimal":
         forward = _forward(request, progress) if request.verify and request.refine else None
-        plan = optimal_plan(request, profile, formula, say, forward)
+        plan = optimal_plan(request, profile, formula, say, forward, neighbours=True)
     else:
         plan = paper_plan(request, profile, formula, say)
     attempt = attempt_of(request, subject, formula, plan)
@@ -206,7 +235,8 @@ def _lower(attempt: Draft) -> Request | None:
     run = None if attempt.check is None else attempt.check.run
     found = None if run is None else run.verification
     ended = None if found is None else found.critical or found.ahead
-    if ended is None or request.method != "optimal" or not request.refine:
+    given = request.tube.pressure_bar is not None
+    if ended is None or given or request.method != "optimal" or not request.refine:
         return None
     bar = _STABLE_SHARE * ended.pressure_bar
     return replace(request, tube=replace(request.tube, max_pressure_bar=bar))

@@ -48,3 +48,16 @@ def shared() -> Path:
             pytest.fail(f"{folder} is absent, and PROFILETOOL_NEED_SHARED=1 demands it")
         pytest.skip("needs the reference data in ../shared")
     return folder
+
+
+@pytest.fixture(autouse=True)
+def no_trials(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Try no other options for an infeasible design, which takes seconds; `trials` does."""
+    if "trials" in request.keywords:
+        return
+    from profiletool import pipeline
+    from profiletool.records.way import WaysOut
+    from profiletool.verdict import ways
+
+    for module in (pipeline, ways):
+        monkeypatch.setattr(module, "ways_out", lambda *_: WaysOut((), ("nothing",)))

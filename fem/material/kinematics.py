@@ -5,12 +5,12 @@ All arrays carry the tensor indices first and any batch of points behind: F (3, 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
 
-from fem.arrays import FloatArray
+from fem.arrays import SINGLE, FloatArray
 
 # The pairs (i, k) of spatial indices that a tangent A_ijkl is stored for; A_ijkl = A_klij.
 PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
@@ -83,6 +83,10 @@ class Kinematics:
     B: FloatArray
     I1: FloatArray
     I2: FloatArray
+
+    def single(self) -> Kinematics:
+        """Give the same in single precision, as a tangent may be kept in."""
+        return Kinematics(*(getattr(self, f.name).astype(SINGLE) for f in fields(self)))
 
     @cached_property
     def principal(self) -> Principal:

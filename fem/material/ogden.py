@@ -108,7 +108,8 @@ class Ogden(Quadratic):
             right[3 + number] = sums[number] * left[3 + number]
             right[6 + number] = differences[number] * left[6 + number]
         for number, (i, m) in enumerate(PAIRS):
-            np.einsum("rj...,rn...->jn...", left[:, i], right[:, m], out=A[number])
+            entry = np.einsum("rj...,rn...->jn...", left[:, i], right[:, m])
+            A[number] = entry
         add_volumetric(A, k, p, stiffness)
         return A
 

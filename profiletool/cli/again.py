@@ -69,11 +69,17 @@ def report(file: DesignFile, **options: Any) -> None:
         _again(file, asked, "report")
 
 
-def refine(file: DesignFile, **options: Any) -> None:
+def refine(
+    file: DesignFile,
+    pressure: Annotated[
+        float | None, typer.Option(help="The operating pressure, bar (default: what suits best).")
+    ] = None,
+    **options: Any,
+) -> None:
     """Let finite elements correct the joints of a design, and write every file anew."""
     asked = Again(**options)
     with exit_codes(asked.debug):
-        _again(file, asked, "refined", refined=True)
+        _again(file, asked, "refined", refined=True, pressure_bar=pressure)
 
 
 for _command in (edit, report, refine):
@@ -81,7 +87,13 @@ for _command in (edit, report, refine):
 
 
 def _again(
-    given: Path, asked: Again, name: str, *, change: Edit | None = None, refined: bool = False
+    given: Path,
+    asked: Again,
+    name: str,
+    *,
+    change: Edit | None = None,
+    refined: bool = False,
+    pressure_bar: float | None = None,
 ) -> None:
     """Take a design up again, write its folder, and end with the exit code of its verdict."""
     from profiletool import outputs, pipeline
@@ -100,10 +112,11 @@ def _again(
     formula = named_formula(design.formula.name) if other is None else read_formula(other)
     with progress_bar("finite elements", asked.quiet) as progress:
         result = pipeline.run_again(
-            design, profile, formula, say, progress, edit=change, refine=refined
-        )
+            design, profile, formula, say, progress, edit=change, refine=refined,
+            pressure_bar=pressure_bar,
+        )  # fmt: skip
     files = outputs.files_of(result, paper=asked.paper)
     write.write_folder(folder, files, asked.force)
     text = files["design.json"].decode() if asked.as_json else joint_table(result.design)
     typer.echo(text, nl=False)
-    conclude(result, folder, say)
+    conclude(result, folder, say, name)

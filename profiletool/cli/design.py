@@ -90,8 +90,19 @@ def design(
 with_signature(design, parameters_of(design), parameters_of_rows(DESIGN), parameters_of(Delivery))
 
 
-def conclude(result: Result, folder: Path, say: Callable[[str], None]) -> None:
+_AS = {"edited": " as it was changed", "report": "", "refined": " as it was refined"}
+_CHOOSE = "design chooses joints anew"
+_ADVICE = {
+    "edited": f"refine lets finite elements correct it, and {_CHOOSE}",
+    "report": f"refine lets finite elements correct it, and {_CHOOSE}",
+    "refined": f"its number of joints and their cuts stay as they are: {_CHOOSE}",
+}
+
+
+def conclude(result: Result, folder: Path, say: Callable[[str], None], again: str = "") -> None:
     """Print the notes, and end with the exit code of what is wrong with the design.
+
+    ``again`` is the command that took a design up again: it looked for no better one.
 
     Raises
     ------
@@ -101,9 +112,15 @@ def conclude(result: Result, folder: Path, say: Callable[[str], None]) -> None:
         say(f"note: {warning}")
     say(f"written: {folder}")
     if result.reasons:
+        if again:
+            raise Infeasible(
+                f"the design{_AS[again]} is beyond the limits ({'; '.join(result.reasons[:2])}); "
+                f"it is in {folder}, marked infeasible; {_ADVICE[again]}"
+            )
+        way = "" if result.ways is None else f"; {result.ways}"
         raise Infeasible(
             f"no design within the limits ({'; '.join(result.reasons[:2])}); "
-            f"the best attempt is in {folder}, marked infeasible"
+            f"the best attempt is in {folder}, marked infeasible{way}"
         )
     if result.check is not None and result.check.failure is not None:
         raise NotVerified(
@@ -114,10 +131,10 @@ def conclude(result: Result, folder: Path, say: Callable[[str], None]) -> None:
 
 def _doubted(unsure: Unsure, name: str) -> NoObject:
     """Draw what the object could be, and say where: never over another file."""
-    from profiletool import outputs
     from profiletool.files import write
+    from profiletool.report.candidates import draw_candidates
 
     names = itertools.chain([name], (f"{name}_{k}" for k in itertools.count(2)))
     file = next(file for one in names if not (file := Path(f"{one}.png")).exists())
-    write.write_file(file, outputs.candidates_png(unsure), force=False)
+    write.write_file(file, draw_candidates(unsure.rgb, unsure.candidates), force=False)
     return NoObject(f"{unsure}; {file} shows what it could be")

@@ -19,6 +19,7 @@ from profiletool.joints.correction.parameters import PosedChain
 from profiletool.joints.layout import Layout
 from profiletool.joints.optimal_method import angles, corrected, model_of, places_of
 from profiletool.joints.plan import Plan
+from profiletool.joints.windows import off_mesh
 from profiletool.records.design import Design, Joint
 from profiletool.records.edit import Edit
 from profiletool.records.profile import Profile
@@ -113,8 +114,11 @@ def plan_again(
         A joint bends out of the plane.
     """
     posed, model = posed_of(design), model_of(request, formula)
+    if request.tube.pressure_bar is not None:
+        posed = replace(posed, pressure=request.tube.pressure_bar / BAR_PER_MPA)
     if forward is not None:
         limits = limits_of(model, request.tube, request.base_free)
+        request = on_mesh(request, design)
         posed = corrected(request, forward, profile, model, (posed, limits), say)
     chain, pressure_bar = posed.chain, BAR_PER_MPA * posed.pressure
     joints = _joints(design, chain, pressure_bar, formula)
@@ -134,6 +138,13 @@ def plan_again(
             layout.bends(), layout.length_mm, request.tube.radius_mm, posed.pose, profile.sign
         )
     return Plan(layout=layout, by=by, bent=bent, places=places_of(bent, chain, profile))
+
+
+def on_mesh(request: Request, design: Design) -> Request:
+    """Keep the joints on whole meshes where those of a design are, and no step is asked for."""
+    if request.place_step_mm is None and not off_mesh(design.joints, design.gauze):
+        return replace(request, place_step_mm=design.gauze.pitch_mm)
+    return request
 
 
 def posed_of(design: Design) -> PosedChain:

@@ -8,7 +8,7 @@ import numpy as np
 
 from formula.errors import OutOfRange
 from profiletool.bending.model import Model
-from profiletool.records.request import TubeSpec
+from profiletool.records.request import PRESSURE_STEP_BAR, TubeSpec
 from profiletool.records.units import BAR_PER_MPA, FloatArray
 
 BASE_TURN_RAD, BASE_OFFSET_MM = float(np.radians(15.0)), 3.0
@@ -26,9 +26,12 @@ def limits_of(model: Model, spec: TubeSpec, base_free: bool = False) -> Limits:
         `BASE_OFFSET_MM`.
     """
     low, high = model.pressure
+    high = max(min(high, spec.max_pressure_bar / BAR_PER_MPA), low)
+    if spec.pressure_bar is not None:
+        low = high = spec.pressure_bar / BAR_PER_MPA
     return Limits(
         alpha=model.alpha,
-        pressure=(low, max(min(high, spec.max_pressure_bar / BAR_PER_MPA), low)),
+        pressure=(low, high),
         wrap_mm=wrap_mm(spec),
         end_mm=END_WRAP_MM,
         root_mm=spec.root_mm,
@@ -56,7 +59,7 @@ def cuts_of(model: Model, spec: TubeSpec) -> FloatArray:
     return np.asarray(cuts, dtype=float)
 
 
-PRESSURE_STEP = 0.001  # MPa: what a gauge can be set to
+PRESSURE_STEP = PRESSURE_STEP_BAR / BAR_PER_MPA
 WRAP_MM = 2.0  # least wrapped length between two windows, and at least one mesh
 END_WRAP_MM = 4.0  # least wrapped length at the closed end: the paper's mould leaves 4 mm there
 

@@ -2,7 +2,8 @@
 
 Threads and cuts of a joint are off by themselves: the angle that they cost moves all of the tube
 behind the joint, by its lever. Rubber, wall and pressure are one direction, which setting the
-pressure on the finished actuator takes out; how well it can be set remains.
+pressure on the finished actuator takes out; how well it can be set remains. So may all sectors be
+off together: how far the wall between two threads is held is a convention of the model.
 
 Glossary
 --------
@@ -112,9 +113,9 @@ class ExpectedRows:
 
     Attributes
     ----------
-    values : (n + 1,) mm
-        Of each joint's own errors; then of the pressure.
-    jacobian : (n + 1, q)
+    values : (n + 2,) mm
+        Of each joint's own errors; then of the pressure, and of all sectors together.
+    jacobian : (n + 2, q)
         The levers held.
     """
 
@@ -122,7 +123,7 @@ class ExpectedRows:
     jacobian: FloatArray
 
     def moved(self, change: FloatArray) -> FloatArray:
-        """Give the values after changes of the numbers, (..., q), to first order: (..., n + 1)."""
+        """Give the values after changes of the numbers, (..., q), to first order: (..., n + 2)."""
         return np.asarray(self.values + change @ self.jacobian.T)
 
     def scaled(self, factor: float) -> ExpectedRows:
@@ -162,9 +163,9 @@ class Expected:
     def rms_mm(self, posed: PosedChain, shape: Shape, closest: ClosestPoints) -> float:
         """Give the expected motion of the line, RMS over builds and points, without any weight."""
         arms = levers(posed, shape, closest)
-        own, slope = self._joints(posed, posed.chain.alpha, posed.pressure)
-        common = np.mean((slope @ arms) ** 2)
-        return float(np.sqrt(own**2 @ np.mean(arms**2, axis=1) + common))
+        own, common = self._joints(posed, posed.chain.alpha, posed.pressure)
+        together = np.sum(np.mean((common @ arms) ** 2, axis=1))
+        return float(np.sqrt(own**2 @ np.mean(arms**2, axis=1) + together))
 
     def rows(
         self, parameters: Parameters, vector: FloatArray, shape: Shape, closest: ClosestPoints
@@ -175,25 +176,26 @@ class Expected:
         a, p = _ALPHA_STEP, _PRESSURE_STEP
         alphas = np.clip([alpha, alpha + a, alpha - a, alpha, alpha], *self.model.alpha)
         pressures = np.clip([P, P, P, P + p, P - p], *self.model.pressure)
-        own, slope = self._joints(posed, alphas, pressures[:, None])
+        own, common = self._joints(posed, alphas, pressures[:, None])
         da, dP = alphas[1] - alphas[2], pressures[3] - pressures[4]
         lever = np.sqrt(np.mean(arms**2, axis=1))
-        swing = slope[0] @ arms
-        common = max(float(np.sqrt(np.mean(swing**2))), _LEAST)
-        # Of the root of a mean square, by the slope of each joint.
-        by_slope = arms @ swing / (arms.shape[1] * common)
-        jacobian = np.zeros((n + 1, len(vector)))
+        swing = common[:, 0] @ arms
+        moved = np.maximum(np.sqrt(np.mean(swing**2, axis=1)), _LEAST)
+        # Of the root of a mean square, by the angle of each joint.
+        by_angle = swing @ arms.T / (arms.shape[1] * moved[:, None])
+        jacobian = np.zeros((n + len(moved), len(vector)))
         jacobian[np.arange(n), np.arange(n)] = lever * (own[1] - own[2]) / da
-        jacobian[n, :n] = by_slope * (slope[1] - slope[2]) / da
+        jacobian[n:, :n] = by_angle * (common[:, 1] - common[:, 2]) / da
         jacobian[:n, 2 * n] = lever * (own[3] - own[4]) / dP
-        jacobian[n, 2 * n] = by_slope @ (slope[3] - slope[4]) / dP
-        rows = ExpectedRows(np.append(lever * own[0], common), jacobian)
+        jacobian[n:, 2 * n] = np.sum(by_angle * (common[:, 3] - common[:, 4]), axis=1) / dP
+        rows = ExpectedRows(np.concatenate([lever * own[0], moved]), jacobian)
         return rows.scaled(float(np.sqrt(self.weight)))
 
     def _joints(
         self, posed: PosedChain, alpha: FloatArray, pressure: FloatArray | float
     ) -> tuple[FloatArray, FloatArray]:
-        """Give the angles' standard deviations, rad: by their own errors, by the pressure's."""
+        """Give the angles' standard deviations, rad, (..., n), and what is common, (2, ..., n)."""
         slopes = slopes_of(self.model, posed.chain.openF, alpha, pressure)
         own = np.sqrt(angle_variance(slopes, self.sizes) + _LEAST**2)
-        return own, posed.chain.sense * self.sizes.pressure * slopes.pressure
+        common = [self.sizes.pressure * slopes.pressure, self.sizes.alpha * slopes.alpha]
+        return own, posed.chain.sense * np.array(common)

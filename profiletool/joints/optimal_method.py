@@ -18,6 +18,7 @@ from profiletool.joints.bounds import PRESSURE_STEP, Limits
 from profiletool.joints.correction.by_model import BendingForwardModel
 from profiletool.joints.correction.correct import (
     CannotBend,
+    Corrected,
     ForwardModel,
     StepSizes,
     correct,
@@ -25,18 +26,20 @@ from profiletool.joints.correction.correct import (
 from profiletool.joints.correction.parameters import PosedChain, parameters_of
 from profiletool.joints.expected import Aim, ErrorSizes, Expected, error_sizes
 from profiletool.joints.layout import Layout
+from profiletool.joints.misfit import misfit
 from profiletool.joints.optimal.choose import TOLERANCE_MM, Choice, ChoiceOptions, choose
 from profiletool.joints.plan import Plan, out_of_reach
 from profiletool.profile.curve import points_at
 from profiletool.records.design import AWAY_DEG, TOWARD_DEG, Joint
 from profiletool.records.frames import Shape
 from profiletool.records.profile import Profile
-from profiletool.records.request import Request, TubeSpec
+from profiletool.records.request import PLACE_STEP_MM, Request, TubeSpec
 from profiletool.records.rubber import law_of
 from profiletool.records.units import BAR_PER_MPA, FloatArray
 
 S = TypeVar("S")
 _CHOICES = 2
+_MESH_COSTS_MM = 0.1  # RMS: what nobody sees, where every cut falls on whole threads
 _AGAIN = 0.97  # of the pressure that a tube stands, where it does not stand the one asked
 
 
@@ -46,6 +49,8 @@ def optimal_plan(
     formula: Formula,
     say: Callable[[str], None],
     forward: ForwardModel[S] | None = None,
+    *,
+    neighbours: bool = False,
 ) -> Plan:
     """Choose all joints at once, go to numbers that can be built, and correct them.
 
@@ -60,6 +65,8 @@ def optimal_plan(
     forward : ForwardModel, optional
         Of the correction, such as finite elements of the whole actuator; by default the model
         that the joints are chosen by.
+    neighbours : bool
+        Whether the choice tells of its neighbours, too; see `Choice`.
 
     Raises
     ------
@@ -71,13 +78,8 @@ def optimal_plan(
         When no joints follow the profile even roughly.
     """
     model = model_of(request, formula)
-    if request.tube.max_pressure_bar < BAR_PER_MPA * model.pressure[0]:
-        raise UsageError(
-            f"`max_pressure_bar` {request.tube.max_pressure_bar:g} bar is less than the "
-            f"{BAR_PER_MPA * model.pressure[0]:g} bar from which on the joints are known by the "
-            f"{_by(model)}"
-        )
-    posed, choice, notes, hopeless = _standing(request, profile, model, say, forward)
+    _check_pressures(request.tube, model)
+    posed, choice, notes, hopeless = _standing(request, profile, model, say, forward, neighbours)
     bent = model.shape(posed.chain, posed.pressure, posed.pose, profile.sign)
     return Plan(
         layout=_layout(posed, choice, bent, model, formula),
@@ -97,6 +99,7 @@ def _standing(
     model: Model,
     say: Callable[[str], None],
     forward: ForwardModel[S] | None,
+    neighbours: bool,
 ) -> tuple[PosedChain, Choice, tuple[str, ...], str]:
     """Choose and correct joints; where the forward model cannot bend them, again at less pressure.
 
@@ -104,34 +107,61 @@ def _standing(
     bending model corrects it. The notes say so, and the last why it is out of reach.
     """
 
-    def by_model(choice: Choice) -> PosedChain:
-        bending = BendingForwardModel(model)
-        return corrected(request, bending, profile, model, start_of(choice), lambda line: None)
-
     def say_fe(line: str) -> None:
         say(f"finite elements, {line}")
 
     spec, notes = request.tube, list[str]()
     for _ in range(_CHOICES):
-        choice = _chosen(request, profile, model, spec)
+        choice = _chosen(request, profile, model, spec, neighbours)
         say(
             f"joints: {len(choice.chain.openF)} at {BAR_PER_MPA * choice.pressure:.2f} bar, "
             f"{choice.misfit.rms_mm:.2f} mm RMS off the profile by the {_by(model)}"
         )
         hopeless = out_of_reach(profile.length_mm, choice.misfit.rms_mm, request)
+        steps, posed = _settled(request, choice, profile, model)
         if forward is None or hopeless:
-            return by_model(choice), choice, tuple(notes), hopeless
+            return posed, choice, tuple(notes), hopeless
         try:
-            posed = corrected(request, forward, profile, model, start_of(choice), say_fe)
+            posed = corrected(steps, forward, profile, model, start_of(choice), say_fe)
             return posed, choice, tuple(notes), ""
         except CannotBend as problem:
             notes.append(f"the first choice of joints did not stand by FE: {problem}")
             say(notes[-1])
-            posed = by_model(choice)
             spec = replace(spec, max_pressure_bar=BAR_PER_MPA * _AGAIN * problem.reached)
-            if problem.reached <= choice.limits.pressure[0]:
+            if problem.reached <= choice.limits.pressure[0]:  # as where the pressure is given
                 break
     return posed, choice, tuple(notes), ""
+
+
+def _settled(
+    request: Request, choice: Choice, profile: Profile, model: Model
+) -> tuple[Request, PosedChain]:
+    """Settle the step of the places (see `Request`), and correct a choice by the bending model."""
+    asked = [request]
+    if request.place_step_mm is None:
+        steps = (PLACE_STEP_MM, request.tube.pitch_mm)
+        asked = [replace(request, place_step_mm=step) for step in steps]
+    bending, start = BendingForwardModel(model), start_of(choice)
+    found = [correction(one, bending, profile, model, start, lambda line: None) for one in asked]
+    fits = [misfit(one.best.shape, profile).rms_mm for one in found]
+    best = 1 if len(fits) > 1 and fits[1] < fits[0] + _MESH_COSTS_MM else 0
+    return asked[best], found[best].best.posed
+
+
+def _check_pressures(spec: TubeSpec, model: Model) -> None:
+    """Refuse pressures that the joints are not known for."""
+    low, high = (BAR_PER_MPA * pressure for pressure in model.pressure)
+    if spec.max_pressure_bar < low:
+        raise UsageError(
+            f"`max_pressure_bar` {spec.max_pressure_bar:g} bar is less than the {low:g} bar from "
+            f"which on the joints are known by the {_by(model)}"
+        )
+    given = spec.pressure_bar
+    if given is not None and not low - 1e-9 <= given <= high + 1e-9:
+        raise UsageError(
+            f"`pressure_bar` {given:g} bar is not within the {low:g} to {high:g} bar that the "
+            f"joints are known for by the {_by(model)}"
+        )
 
 
 def model_of(request: Request, formula: Formula) -> Model:
@@ -149,13 +179,16 @@ def _by(model: Model) -> str:
     return "joint response" if isinstance(model, Response) else "formula"
 
 
-def _chosen(request: Request, profile: Profile, model: Model, spec: TubeSpec) -> Choice:
+def _chosen(
+    request: Request, profile: Profile, model: Model, spec: TubeSpec, neighbours: bool
+) -> Choice:
     options = ChoiceOptions(
         tolerance_mm=request.tolerance_mm or TOLERANCE_MM,
         interference_mm=request.interference_mm,
         count=request.joints,
         base_free=request.base_free,
         sizes=_sizes(request),
+        neighbours=neighbours,
     )
     try:
         return choose(profile, model, spec, options)
@@ -176,10 +209,10 @@ def _aim(request: Request, model: Model) -> Aim:
 
 def _step_sizes(request: Request) -> StepSizes:
     spec = request.tube
-    alpha = request.alpha_step_deg
+    alpha, place = request.alpha_step_deg, request.place_step_mm
     return StepSizes(
         alpha=spec.thread_rad if alpha is None else float(np.radians(alpha)),
-        place=request.place_step_mm,
+        place=PLACE_STEP_MM if place is None else place,
         pressure=PRESSURE_STEP,
     )
 
@@ -198,20 +231,22 @@ def corrected(
     say: Callable[[str], None],
 ) -> PosedChain:
     """Correct an actuator by a forward model, in numbers that can be built."""
+    return correction(request, forward, profile, model, start, say).best.posed
+
+
+def correction(
+    request: Request,
+    forward: ForwardModel[S],
+    profile: Profile,
+    model: Model,
+    start: tuple[PosedChain, Limits],
+    say: Callable[[str], None],
+) -> Corrected[S]:
+    """Correct an actuator as `corrected`, with the state that it was left in."""
     posed, limits = start
-    parameters = parameters_of(posed.chain, profile, limits)
-    vector = parameters.pack(posed)
-    found = correct(
-        forward,
-        model,
-        parameters,
-        vector,
-        profile,
-        _step_sizes(request),
-        _aim(request, model),
-        say,
-    )
-    return found.best.posed
+    parameters, aim = parameters_of(posed.chain, profile, limits), _aim(request, model)
+    vector, steps = parameters.pack(posed), _step_sizes(request)
+    return correct(forward, model, parameters, vector, profile, steps, aim, say)
 
 
 def _layout(

@@ -13,6 +13,7 @@ from profiletool.records.built import Built, BuiltMisfit, SectorThreads, TrimPoi
 from profiletool.records.clamp import Clamp
 from profiletool.records.frames import Pose
 from profiletool.records.model import ModelInputs
+from profiletool.records.neighbour import Neighbour
 from profiletool.records.side import Side
 
 TOWARD_DEG, AWAY_DEG = 270.0, 90.0  # alpha_center of a joint that bends toward the object, or away
@@ -251,6 +252,8 @@ class Design:
         How much of tube and gauze is held behind x = 0.
     seal : str or None
         Digest of all that finite elements verified; see `profiletool.records.seal`.
+    neighbours : tuple of Neighbour
+        Choices near the chosen one, that one first; empty where joints were not chosen all at once.
     """
 
     source: Source
@@ -274,6 +277,7 @@ class Design:
     threads_off_mm: BuiltMisfit | None = None
     clamp: Clamp = field(default_factory=Clamp)
     seal: str | None = None
+    neighbours: tuple[Neighbour, ...] = ()
 
     @property
     def thread_rad(self) -> float:

@@ -13,7 +13,13 @@ from profiletool.records.built import BuildErrors, build_errors
 from profiletool.records.model import ModelInputs, check_model
 from profiletool.records.option import Option
 from profiletool.records.options import DESIGN, MODEL
-from profiletool.records.request import Look, Request, ScaleRequest, TubeSpec
+from profiletool.records.request import (
+    PRESSURE_STEP_BAR,
+    Look,
+    Request,
+    ScaleRequest,
+    TubeSpec,
+)
 
 if TYPE_CHECKING:
     from formula.theta import Formula
@@ -62,10 +68,26 @@ def request_of(file: Path, values: Mapping[str, Any], formula: Formula | None = 
     return Request(file, **parts, **own)
 
 
-def request_again(design: Design, profile: Profile, refine: bool) -> Request:
+def changed_request(request: Request, values: Mapping[str, Any]) -> Request:
+    """Give a request with other values, by field name."""
+    paths = {row.field: row.path for row in DESIGN}
+    for name, value in values.items():
+        holder, _, field = paths[name].rpartition(".")
+        if holder:
+            part = replace(getattr(request, holder), **{field: value})
+            request = replace(request, **{holder: part})
+        else:
+            request = replace(request, **{field: value})
+    return request
+
+
+def request_again(
+    design: Design, profile: Profile, refine: bool, pressure_bar: float | None = None
+) -> Request:
     """Ask for a design anew: its own tube, model and errors of the build, along its profile.
 
-    Its numbers stay as they are, whatever steps they lie on, unless they are to be corrected.
+    Its numbers stay as they are, whatever steps they lie on, unless they are to be corrected; then
+    its pressure is the one that is given, if any.
     """
     tube, gauze, most = design.tube, design.gauze, TubeSpec()
     spec = TubeSpec(
@@ -79,6 +101,7 @@ def request_again(design: Design, profile: Profile, refine: bool) -> Request:
         max_length_mm=max(tube.length_mm, most.max_length_mm),
         rubber=tube.rubber,
         clamp_mm=design.clamp.length_mm,
+        pressure_bar=pressure_bar,
     )
     asked = Request(
         Path(design.source.file),
@@ -106,9 +129,24 @@ def check_request(request: Request) -> None:
         raise UsageError(f"`pitch_mm` must be more than the thread, {tube.thread_mm:g} mm")
     if tube.wall_mm >= tube.radius_mm:
         raise UsageError("`wall_mm` must be less than half of `outer_diameter_mm`")
+    if tube.pressure_bar is not None:
+        _check_pressure(tube.pressure_bar, tube.max_pressure_bar)
     if not 0.0 <= request.start_pct < request.end_pct <= 100.0:
         raise UsageError("`start_pct` and `end_pct` must be percentages, the first one the lower")
     check_model(request.model)
+
+
+def _check_pressure(pressure_bar: float, most_bar: float) -> None:
+    if pressure_bar > most_bar:
+        raise UsageError(
+            f"`pressure_bar` {pressure_bar:g} bar is more than the highest, {most_bar:g} bar: "
+            "lower it, or raise `max_pressure_bar` as well"
+        )
+    steps = pressure_bar / PRESSURE_STEP_BAR
+    if abs(steps - round(steps)) > 1e-6:
+        raise UsageError(
+            f"`pressure_bar` comes in steps of {PRESSURE_STEP_BAR:g} bar, not {pressure_bar:g}"
+        )
 
 
 def model_of(values: Mapping[str, Any], base: ModelInputs) -> ModelInputs:

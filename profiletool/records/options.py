@@ -112,6 +112,12 @@ DESIGN = (
         "--pitch", "tube.pitch_mm", _MM, "Mesh pitch of the gauze, mm.", above=0.0, main=True
     ),
     Option(
+        "--pressure", "tube.pressure_bar", _BAR,
+        "The operating pressure, as of one regulator for several fingers, bar, in steps of 0.01 "
+        "(default: what suits best, up to --max-pressure).",
+        above=0.0, absent="what suits best",
+    ),
+    Option(
         "--max-pressure", "tube.max_pressure_bar", _BAR, "Highest pressure, bar.", above=0.0,
         main=True,
     ),
@@ -155,8 +161,10 @@ DESIGN = (
         absent="one thread",
     ),
     Option(
-        "--place-step", "place_step_mm", _MM, "Step of the joints' places, mm (0: any; optimal).",
-        least=0.0,
+        "--place-step", "place_step_mm", _MM,
+        "Step of the joints' places, mm (default: the gauze's pitch where that costs less than "
+        "0.1 mm, else 1; 0: any; optimal).",
+        least=0.0, absent="the gauze's pitch, or 1 mm",
     ),
     Option(
         "--objective", "objective", _choice("built", "nominal"),
@@ -231,7 +239,7 @@ GRIP = (
 MODEL = tuple(row for row in DESIGN if row.path.startswith("model."))
 # Fields of other records and commands that messages name.
 _OTHERS = {
-    "kerf_mm": "--kerf", "out": "--out", "force": "--force", "pressure_bar": "--pressure",
+    "kerf_mm": "--kerf", "out": "--out", "force": "--force",
     "alpha_center_deg": "--alpha-center", "base": "--from", "runs": "--runs",
     "scheduler": "--scheduler", "workers": "--workers", "alpha_deg": "--alpha",
     "openF_mm": "--openF", "theta_deg": "--theta", "tip_mm": "--tip", "at_bar": "--at",

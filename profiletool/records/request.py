@@ -45,6 +45,8 @@ class ScaleRequest:
     camera_distance_mm: float | None = None
 
 
+PRESSURE_STEP_BAR = 0.01  # what a gauge can be set to
+PLACE_STEP_MM = 1.0  # what a ruler has
 INTERFERENCE_MM = 0.3  # how deep a straight piece of tube may lie in the object as drawn
 
 
@@ -63,6 +65,8 @@ class TubeSpec:
         How often the gauze is rolled around the tube.
     max_pressure_bar, max_length_mm : float
         Highest pressure; longest tube.
+    pressure_bar : float or None
+        The operating pressure where it is given; None for what suits best, up to the highest.
     rubber : RubberLaw or None
         None for the paper's silicone.
     clamp_mm : float or None
@@ -79,6 +83,7 @@ class TubeSpec:
     max_length_mm: float = 250.0
     rubber: RubberLaw | None = None
     clamp_mm: float | None = None
+    pressure_bar: float | None = None
 
     @property
     def clamp(self) -> Clamp:
@@ -160,8 +165,9 @@ class Request:
         Whether the base may leave the profile's start tangent.
     alpha_step_deg : float or None
         Step of alpha_closed; None for one thread, 0 for any value.
-    place_step_mm : float
-        Step of the joints' places; 0 for any value.
+    place_step_mm : float or None
+        Step of the joints' places; 0 for any value, None for the gauze's pitch where that costs
+        little, else `PLACE_STEP_MM`.
     tube : TubeSpec
     formula : Path or None
         A formula file, or the name of one that comes along; None for the paper's.
@@ -195,7 +201,7 @@ class Request:
     interference_mm: float = INTERFERENCE_MM
     base_free: bool = False
     alpha_step_deg: float | None = None
-    place_step_mm: float = 1.0
+    place_step_mm: float | None = None
     tube: TubeSpec = field(default_factory=TubeSpec)
     formula: Path | None = None
     extrapolate: bool = False

@@ -11,6 +11,7 @@ from profiletool.records.design import Design
 from profiletool.records.fe import Verification
 from profiletool.records.frames import Shape
 from profiletool.records.grip import Grip
+from profiletool.records.request import Request
 from profiletool.records.seal import proven
 from profiletool.report.asked import options_of
 from profiletool.report.plots import Mark
@@ -42,6 +43,7 @@ class Dossier:
         What was asked for.
     most_bar : float
         Highest pressure that was asked for.
+    request : Request
     grip : Grip or None
         The finger on its object.
     """
@@ -55,6 +57,7 @@ class Dossier:
     template_svg: str
     options: Sequence[AskedOption]
     most_bar: float
+    request: Request
     grip: Grip | None = None
 
     @property
@@ -89,6 +92,7 @@ def dossier_of(result: Result, scene: Scene, template_svg: str) -> Dossier:
         options=options_of(result.request),
         most_bar=result.request.tube.max_pressure_bar,
         grip=result.grip,
+        request=result.request,
     )
 
 

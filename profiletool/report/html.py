@@ -17,6 +17,8 @@ from profiletool.report.expectation import expectation
 from profiletool.report.film import Film, film_of, still_of
 from profiletool.report.gripping import gripping
 from profiletool.report.markup import Markup, adopted, joined, pairs, tag
+from profiletool.report.measured import measured
+from profiletool.report.neighbours import neighbours
 from profiletool.report.plots import theta_figure
 from profiletool.report.plotted import plotted
 from profiletool.report.stage import controls, legend, readout, stage
@@ -91,6 +93,9 @@ def _sections(dossier: Dossier, film: Film) -> list[_Section]:
         parts.append(
             _Section("trade-off", "More joints, more pressure", plotted(figure, "to", said))
         )
+    if design.neighbours:
+        told = neighbours(design, dossier.request)
+        parts.append(_Section("neighbours", "Neighbours of this design", told))
     parts.append(_Section("build", "How to build it", _build(dossier)))
     if design.trim:
         parts.append(
@@ -105,7 +110,7 @@ def _sections(dossier: Dossier, film: Film) -> list[_Section]:
     if design.sensitivity:
         parts.append(_Section("sensitivity", "What small errors do", sensitivity_table(design)))
     told = provenance(design, found, dossier.options)
-    parts.append(_Section("provenance", "Where this comes from", told))
+    parts.append(_Section("provenance", "Where this comes from", joined((told, measured()))))
     return parts
 
 

@@ -17,6 +17,7 @@ from profiletool.records.picture import Picture, Scale, Silhouette
 from profiletool.records.profile import DrawnLine, Profile
 from profiletool.records.request import Look, Request
 from profiletool.records.side import Side
+from profiletool.records.units import FloatArray
 from profiletool.subject.drawing import see_drawing, sides_apart
 from profiletool.subject.photo import see
 
@@ -62,14 +63,7 @@ def find_subject(request: Request, say: Callable[[str], None]) -> Subject:
     ------
     UnreadableInput, NoScale, NoObject, UsageError
     """
-    reach = Reach(
-        side=request.side,
-        radius_mm=request.tube.radius_mm,
-        clearance_mm=request.clearance_mm,
-        start_pct=request.start_pct,
-        end_pct=request.end_pct,
-    )
-    given = request.given
+    reach, given = _reach(request), request.given
     if isinstance(given, Profile):
         return Subject(None, None, Scale(1.0, "vector"), None, given)
     if given is None and request.file.suffix.lower() in SUFFIXES:
@@ -84,8 +78,7 @@ def find_subject(request: Request, say: Callable[[str], None]) -> Subject:
     silhouette, scale = seen.silhouette, seen.scale
     _check_frame(silhouette, scale, request.side)
     k = scale.mm_per_px
-    origin = top_middle(silhouette.contour_px * [1.0, -1.0]) * [1.0, -1.0]
-    outline = (silhouette.contour_px - origin) * [k, -k]
+    origin, outline = _outline(silhouette, scale)
     width, height = np.ptp(outline, axis=0)
     by_mask = request.look.mask is not None
     sure = "" if by_mask else f" (sure to {100.0 * silhouette.confidence:.0f} %)"
@@ -95,11 +88,48 @@ def find_subject(request: Request, say: Callable[[str], None]) -> Subject:
         f"object: {width:.1f} x {height:.1f} mm, found by {silhouette.method}{sure}, "
         f"{k:.4g} mm per pixel from {scale.source}{within}"
     )
-    reach = replace(reach, noise_mm=silhouette.noise_px * k, spacing_mm=k)
-    profile = profile_of_object(outline, reach)
+    profile = profile_of_object(outline, _seen(reach, silhouette, scale))
     notes = (*picture.notes, *seen.notes, *sides_apart(float(width), request.scale))
     place = float(origin[0]), float(origin[1])
     return Subject(seen.picture, silhouette, scale, place, profile, seen.rotated_deg, notes)
+
+
+def subject_again(subject: Subject, request: Request) -> Subject:
+    """Find the profile of a subject for another request, such as another stretch or tube.
+
+    Raises
+    ------
+    UnreadableInput, NoScale, NoObject, UsageError
+    """
+    silhouette, scale = subject.silhouette, subject.scale
+    if silhouette is None:  # a drawing is read quickly
+        return find_subject(request, lambda line: None)
+    _check_frame(silhouette, scale, request.side)
+    _, outline = _outline(silhouette, scale)
+    profile = profile_of_object(outline, _seen(_reach(request), silhouette, scale))
+    return replace(subject, profile=profile)
+
+
+def _reach(request: Request) -> Reach:
+    return Reach(
+        side=request.side,
+        radius_mm=request.tube.radius_mm,
+        clearance_mm=request.clearance_mm,
+        start_pct=request.start_pct,
+        end_pct=request.end_pct,
+    )
+
+
+def _seen(reach: Reach, silhouette: Silhouette, scale: Scale) -> Reach:
+    k = scale.mm_per_px
+    return replace(reach, noise_mm=silhouette.noise_px * k, spacing_mm=k)
+
+
+def _outline(silhouette: Silhouette, scale: Scale) -> tuple[FloatArray, FloatArray]:
+    """Give the object frame's origin, px, and the outline (M, 2) in it, mm."""
+    k = scale.mm_per_px
+    origin = top_middle(silhouette.contour_px * [1.0, -1.0]) * [1.0, -1.0]
+    return origin, (silhouette.contour_px - origin) * [k, -k]
 
 
 def digest_of(request: Request) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 from profiletool.bending.kinematics import meets_itself
 from profiletool.joints.bounds import PRESSURE_STEP, wrap_mm
 from profiletool.records.design import Design, named
-from profiletool.records.request import Request
+from profiletool.records.request import PLACE_STEP_MM, Request, TubeSpec
 from profiletool.records.units import BAR_PER_MPA
 from profiletool.verdict.draft import Draft
 from profiletool.verify.check import runs_into_itself, withdrawn
@@ -79,25 +79,29 @@ def off_steps(design: Design, request: Request) -> tuple[str, ...]:
     if off:
         what = "whole threads" if request.alpha_step_deg is None else f"steps of {step:g} deg"
         said.append(f"alpha_closed of {named(off)} ({alpha[off[0]]:.2f} deg) is not in {what}")
-    off = [number for number, places in _places(design, request).items() if places]
+    given = request.place_step_mm
+    steps = (spec.pitch_mm, PLACE_STEP_MM) if given is None else (given,)
+    off = min((_off_places(design, spec, step) for step in steps), key=len)
     if off:
-        said.append(f"the place of {named(off)} is not in steps of {request.place_step_mm:g} mm")
+        sizes = " or ".join(f"{step:g}" for step in dict.fromkeys(steps))
+        said.append(f"the place of {named(off)} is not in steps of {sizes} mm")
     finest = BAR_PER_MPA * PRESSURE_STEP
     if not _whole(design.pressure_bar, finest):
         said.append(f"the pressure, {design.pressure_bar:.4f} bar, is finer than {finest:g} bar")
     return tuple(said)
 
 
-def _places(design: Design, request: Request) -> dict[int, bool]:
-    """Whether the place of each joint is off its step: its root's, or of the sector before it."""
-    spec, step = request.tube, request.place_step_mm
+def _off_places(design: Design, spec: TubeSpec, step: float) -> list[int]:
+    """Numbers of the joints whose place is off a step: of the root, or of the sector before."""
     first = design.joints[0]
     least = max(spec.root_mm, 0.5 * first.openF_mm + wrap_mm(spec))
-    off = {first.number: not (_whole(first.centre_mm, step) or first.centre_mm <= least + 1e-6)}
+    on = _whole(first.centre_mm, step) or first.centre_mm <= least + 1e-6
+    off = [] if on else [first.number]
     for before, joint in pairwise(design.joints):
         apart = joint.centre_mm - before.centre_mm
         wrapped = apart - 0.5 * (before.openF_mm + joint.openF_mm)
-        off[joint.number] = not (_whole(apart, step) or _whole(wrapped, step))
+        if not (_whole(apart, step) or _whole(wrapped, step)):
+            off.append(joint.number)
     return off
 
 

@@ -36,7 +36,7 @@ def reasons_of(attempt: Draft, misses: Sequence[Missed]) -> tuple[str, ...]:
         plan.sectors, plan.layout, plan.rules, request.tube, attempt.formula,
         request.joints, place,
     )  # fmt: skip
-    return (*short, *broken(attempt))
+    return (*short, *off_by_fe(attempt.design, profile, request), *broken(attempt))
 
 
 def shortfalls(
@@ -127,6 +127,17 @@ def misses_of(attempt: Draft) -> tuple[Missed, ...]:
         return ()
     bent = replace(plan.choice, shape=attempt.best_shape)
     return missed(profile, bent, plan.model, request.tube, TOLERANCE_MM, placer(request, profile))
+
+
+def off_by_fe(design: Design, profile: Profile, request: Request) -> Iterator[str]:
+    """Say that a polygon within its limits bends, by FE, to another shape than the profile's."""
+    fit, limit = _judged(design, profile, request)
+    if fit is design.fit.fe and (fit.rms_mm > limit or fit.max_mm > WORST * limit):
+        yield (
+            f"by FE the shape lies {fit.rms_mm:.2f} mm RMS and up to {fit.max_mm:.2f} mm off the "
+            f"profile, more than {limit:.2f} and {WORST * limit:.2f} mm; "
+            'take "optimal" as `method`'
+        )
 
 
 def not_good(

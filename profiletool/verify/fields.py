@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem.errors import FemError
-from fem.sensitivity import Rate, sensitivities
+from fem.rates import Rate
+from fem.sensitivity import sensitivities
 from profiletool.joints.closest import closest_points, spaced
 from profiletool.records.design import Design
 from profiletool.records.frames import base_axes

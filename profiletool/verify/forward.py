@@ -14,7 +14,8 @@ from fem.actuator import Actuator
 from fem.errors import BadGeometry, NotConverged
 from fem.mesh import Mesh
 from fem.near import solve_near
-from fem.sensitivity import Rate, Sensitivities, flow_to, sensitivities
+from fem.rates import Rate, Sensitivities, flow_to
+from fem.sensitivity import sensitivities
 from fem.solution import Solution
 from fem.solver import solve
 from profiletool.joints.correction.correct import CannotBend, Iterate
@@ -29,15 +30,19 @@ from profiletool.verify.tube import tube_of
 
 
 class FeForwardModel:
-    """A forward model by finite elements of the whole actuator; ``told`` is called for each."""
+    """A forward model by finite elements of the whole actuator.
+
+    ``told`` is called for each; ``known`` is the solution of a similar one to begin from.
+    """
 
     def __init__(
         self,
         spec: TubeSpec,
         model: ModelInputs = PAPER_MODEL,
         told: Callable[[], None] | None = None,
+        known: Solution | None = None,
     ) -> None:
-        self._spec, self._model, self._told = spec, model, told
+        self._spec, self._model, self._told, self._known = spec, model, told, known
         self._rates: tuple[Solution, Sensitivities] | None = None  # the last ones found
 
     def bend(
@@ -49,7 +54,8 @@ class FeForwardModel:
         try:
             axes = base_axes(float(np.radians(posed.pose.heading_deg)), sign)
             tube = tube_of(posed.chain, self._spec, self._model, axes)
-            solution = self._solved(tube, near, posed.pressure)
+            known = self._known if near is None else near.state
+            solution = self._solved(tube, known, posed.pressure)
         except NotConverged as error:
             raise CannotBend(shortly(error), error.reached) from error
         except BadGeometry as error:
@@ -64,9 +70,9 @@ class FeForwardModel:
         self._rates = (iterate.state, rates)
         return motion_of(iterate, rates)
 
-    def _solved(self, tube: Actuator, near: Iterate[Solution] | None, pressure: float) -> Solution:
-        if near is not None:
-            known, flow = near.state, None
+    def _solved(self, tube: Actuator, known: Solution | None, pressure: float) -> Solution:
+        if known is not None:
+            flow = None
             if self._rates is not None and self._rates[0] is known:
                 rise = pressure - known.states[-1].pressure
                 flow = flow_to(self._rates[1], known.mesh.actuator, tube, rise)

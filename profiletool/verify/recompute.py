@@ -52,5 +52,6 @@ def recomputed(design: Design, target: FloatArray, formula: Formula) -> Design:
         operate_bar=None,
         trim=(),
         threads_off_mm=None,
+        neighbours=(),
     )
     return replace(changed, threads=threads_of(changed))

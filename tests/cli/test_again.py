@@ -6,9 +6,14 @@ import json
 import math
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 
+from profiletool.cli.design import conclude
+from profiletool.errors import Infeasible
+from profiletool.pipeline import Result
 from tests.calls import call, error_of
 from tests.cli.inputs import arc
 
@@ -64,3 +69,22 @@ def test_a_design_without_its_target_is_refused(egg, tmp_path: Path) -> None:
     result = call("report", tmp_path / "alone.json")
     assert result.exit_code == 3
     assert "shape.csv" in error_of(result)
+
+
+@pytest.mark.parametrize(
+    ("again", "says"),
+    [
+        ("edited", "the design as it was changed is beyond the limits (too far); it is in"),
+        ("report", "the design is beyond the limits"),
+        ("refined", "design chooses joints anew"),
+        ("", "no design within the limits (too far); the best attempt is in"),
+    ],
+)
+def test_a_refusal_says_what_was_judged(again: str, says: str, tmp_path: Path) -> None:
+    found = SimpleNamespace(
+        design=SimpleNamespace(warnings=()), reasons=("too far",), ways=None, check=None
+    )
+    with pytest.raises(Infeasible) as refused:
+        conclude(cast(Result, found), tmp_path, lambda line: None, again)
+    assert says in str(refused.value)
+    assert "marked infeasible" in str(refused.value)

@@ -20,9 +20,10 @@ from tests.cli.inputs import REST, Made, arc, picture, unverified
 @pytest.mark.slow
 def test_the_main_job(samples: Path, tmp_path: Path) -> None:
     result = call("design", samples / "bulb.png", "--method", "paper")
-    assert result.exit_code == 0, result.stderr
+    assert result.exit_code == 6  # within the method's limits, and bent by FE to another shape
+    assert "mm off the profile, more than" in result.stderr
     out = tmp_path / "bulb_design"
-    design = check_verified(out, FILES | {"mask.png"})
+    design = check_verified(out, FILES | {"mask.png"}, feasible=False)
     away = [j["number"] for j in design["joints"] if j["alpha_center_deg"] == 90]
     assert away == [len(design["joints"])]  # the opposite one, at the neck
     assert len(design["joints"]) in (6, 7)  # after five or six around the glass
@@ -37,8 +38,8 @@ def test_the_main_job(samples: Path, tmp_path: Path) -> None:
 @pytest.mark.usefixtures("coarse_mesh")
 def test_a_short_tube_is_verified(tmp_path: Path) -> None:
     result = call("design", arc(tmp_path), "--method", "paper")
-    assert result.exit_code == 0, result.stderr
-    design = check_verified(tmp_path / "arc_design", FILES)
+    assert result.exit_code == 6, result.stderr  # verified, and 2.6 mm off a profile of 47 mm
+    design = check_verified(tmp_path / "arc_design", FILES, feasible=False)
     for joint in design["joints"]:
         assert 0.9 < joint["theta_fe_deg"] / joint["theta_formula_deg"] < 1.3
     assert result.stdout.splitlines()[1].split()[:3] == ["joint", "F", "mm"]
@@ -52,18 +53,19 @@ FILES = {
 }  # fmt: skip
 
 
-def check_verified(folder: Path, names: set[str]) -> dict[str, Any]:
+def check_verified(folder: Path, names: set[str], feasible: bool = True) -> dict[str, Any]:
     """A verified design's folder is whole; give what its design.json holds."""
     assert {path.name for path in folder.iterdir()} == names
     design: dict[str, Any] = json.loads((folder / "design.json").read_text())
     assert design["pressure_bar"] <= 2.0
-    assert design["feasible"] is True
+    assert design["feasible"] is feasible
     assert design["verified"] is True
     assert not any("NOT VERIFIED" in warning for warning in design["warnings"])
     assert "NOT VERIFIED" not in (folder / "template.svg").read_text()
     assert design["fit"]["fe"]["max_mm"] > design["fit"]["fe"]["rms_mm"] > 0.0
     curves = {line.split(",")[0] for line in (folder / "shape.csv").read_text().splitlines()}
-    assert curves == {"curve", "target", "formula", "fe"}
+    outline = {"outline"} if "mask.png" in names else set()
+    assert curves == {"curve", "target", "formula", "fe"} | outline
     check_series(folder)
     check_trim(folder, design)
     with Image.open(folder / "overlay.png") as overlay:
@@ -135,9 +137,10 @@ def test_left_and_right_of_a_symmetric_object_agree(tmp_path: Path) -> None:
         result = unverified(file, "--height", 100, "--side", side, "--out", side, "--json")
         designs.append(json.loads(result.stdout))
     left, right = designs
-    # Which of many equally good polygons is taken may differ with the last pixel.
-    turns = [sum(j["theta_target_deg"] for j in design["joints"]) for design in designs]
-    assert turns[0] == pytest.approx(turns[1], abs=1.0)
+    # Which of many equally good choices is taken may differ with the last pixel.
+    off = [design["fit"]["response"]["rms_mm"] for design in designs]
+    assert max(off) < 0.25
+    assert off[0] == pytest.approx(off[1], abs=0.05)
     assert len(left["joints"]) == len(right["joints"])
     assert left["source"]["profile_length_mm"] == pytest.approx(
         right["source"]["profile_length_mm"], abs=0.3
@@ -181,20 +184,23 @@ def test_a_mirrored_drawing_on_the_other_side_is_the_same_design(
     (tmp_path / "mirror.csv").write_text("\n".join(f"{-float(x)},{y}" for x, y in rows))
     left = json.loads(unverified(samples / REST, "--json").stdout)
     right = json.loads(unverified("mirror.csv", "--side", "right", "--json").stdout)
-    assert right["joints"] == left["joints"]
-    assert right["fit"] == left["fit"]
-    assert right["base_pose"]["x_mm"] == -left["base_pose"]["x_mm"]
+    digit = 1.5e-6  # the last one of a design.json
+    for ours, mirrored in zip(left["joints"], right["joints"], strict=True):
+        assert mirrored == pytest.approx(ours, abs=digit)
+    for by in ("formula", "response"):
+        assert right["fit"][by] == pytest.approx(left["fit"][by], abs=digit)
+    assert right["base_pose"]["x_mm"] == pytest.approx(-left["base_pose"]["x_mm"], abs=digit)
 
 
 @pytest.mark.slow
 def test_scale_options_on_a_drawing_are_not_silent(samples: Path) -> None:
     design = json.loads(unverified(samples / REST, "--height", 50, "--json").stdout)
-    assert any("scale options were not used" in warning for warning in design["warnings"])
+    assert any("height that is given makes it" in warning for warning in design["warnings"])
 
 
 @pytest.mark.slow
 def test_the_fit_is_on_the_screen(samples: Path) -> None:
-    for method, by in (("paper", ["formula"]), ("optimal", ["formula", "joint response"])):
+    for method, by in (("paper", ["formula"]), ("optimal", ["joint response", "formula"])):
         shown = unverified(samples / REST, "--method", method, "--force").stdout
         told = [line for line in shown.splitlines() if " off the profile: " in line]
         assert [line.partition(" off the profile: ")[0] for line in told] == [

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from fem import blas
+from fem.arrays import DOUBLE, SINGLE, DType
 
 
 def counts() -> list[int]:
@@ -38,23 +39,25 @@ def test_cholesky_tells_an_indefinite_matrix() -> None:
     assert not blas.cholesky(np.array([[1.0, 2.0], [2.0, 1.0]]))
 
 
-def test_triangular_solves_and_the_gram_matrix() -> None:
-    A = definite(5, 1)
-    U = A.copy()
+@pytest.mark.parametrize("dtype", [DOUBLE, SINGLE])
+@pytest.mark.parametrize("n", [5, 48, 73, 131])
+def test_triangular_solves_and_the_gram_matrix(n: int, dtype: DType) -> None:
+    U, rng = definite(n, 1).astype(dtype), np.random.default_rng(2)
     blas.cholesky(U)
-    T, rng = np.triu(U), np.random.default_rng(2)
-    B, rows = rng.normal(size=(5, 3)), rng.normal(size=(4, 5))
+    T, close = np.triu(U), 1e5 * np.finfo(dtype).eps
+    B, rows = rng.normal(size=(n, 3)).astype(dtype), rng.normal(size=(4, n)).astype(dtype)
     solved = B.copy()
     blas.solve_lower(U, solved)
-    np.testing.assert_allclose(T.T @ solved, B, atol=1e-12)
-    forward, backward = rows.copy(), rows.copy()
-    blas.solve_rows(U, forward, transposed=False)
-    blas.solve_rows(U, backward, transposed=True)
-    np.testing.assert_allclose(forward @ T, rows, atol=1e-12)
-    np.testing.assert_allclose(backward @ T.T, rows, atol=1e-12)
-    C = np.zeros((3, 3))
+    np.testing.assert_allclose(T.T @ solved, B, atol=close)
+    for some in (rows, rows[:1]):  # many at once, and one by one
+        forward, backward = some.copy(), some.copy()
+        blas.solve_rows(U, forward, transposed=False)
+        blas.solve_rows(U, backward, transposed=True)
+        np.testing.assert_allclose(forward @ T, some, atol=close)
+        np.testing.assert_allclose(backward @ T.T, some, atol=close)
+    C = np.zeros((3, 3), dtype)
     blas.subtract_gram(C, B)
-    np.testing.assert_allclose(C, -np.triu(B.T @ B), atol=1e-12)
+    np.testing.assert_allclose(C, -np.triu(B.T @ B), atol=close)
 
 
 def test_nothing_to_solve() -> None:

@@ -51,6 +51,32 @@ def test_where_the_tangent_is_positive_nothing_changes() -> None:
     assert np.array_equal(plain, positive)
 
 
+def test_a_tangent_in_single_precision_is_the_same_one_but_for_its_digits() -> None:
+    system = System(mesh_of(), single=True)
+    x, rhs = Chart(system.mesh).taut(4e-4).x, np.ones(system.unknowns.count)
+    forces, inverse = system.factor(x, 0.01)
+    assert inverse is not None
+    exact = inverse.solve(rhs)
+    quick_forces, quick = system.factor(x, 0.01, double=False)
+    assert quick is not None
+    rough = quick.solve(rhs)
+    assert rough.dtype == exact.dtype
+    np.testing.assert_allclose(rough, exact, rtol=1e-3, atol=1e-3 * np.abs(exact).max())
+    assert not np.array_equal(rough, exact)
+    np.testing.assert_array_equal(quick_forces.internal, forces.internal)
+
+
+def test_double_precision_counts_what_single_cannot() -> None:
+    plain, system = System(mesh_of()), System(mesh_of(), single=True)
+    x = bent(plain, 1).x
+    negative, _, positive = inverse_of(plain, x, 0.6)
+    _, inverse = system.factor(x, 0.6, double=False)
+    assert inverse is not None
+    assert inverse.negative == negative > 0
+    unit = np.eye(plain.unknowns.count)
+    assert np.array_equal(inverse.solve(unit, positive=True), positive)
+
+
 def test_downhill_leads_to_the_same_state() -> None:
     run = solve(tube(), [PRESSURE], COARSE)
     system, chart = System(run.mesh), Chart(run.mesh)

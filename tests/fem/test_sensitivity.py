@@ -13,7 +13,9 @@ from fem.errors import FemError
 from fem.material import MooneyRivlin
 from fem.meshsize import MeshSize
 from fem.near import solve_near
-from fem.sensitivity import Rate, Sensitivities, sensitivities
+from fem.parameters import alpha_center, poisson, rubber_constant
+from fem.rates import Rate, Sensitivities
+from fem.sensitivity import rates_by, sensitivities
 from fem.solution import State
 from fem.solver import solve
 from tests.fem.laws import RUBBERS
@@ -113,6 +115,28 @@ def test_stiffer_rubber_is_less_pressure_and_a_softer_gauze() -> None:
     theta = (after.theta - before.theta) / 0.02
     np.testing.assert_allclose(rate.theta, theta, rtol=2e-3)
     assert rate.theta[0] < 0.0
+
+
+def test_by_the_rubber_s_constants_and_the_sectors_middles() -> None:
+    actuator = two((250.0, 30.0))
+    run = solve(actuator, [PRESSURE], SIZE)
+    wanted = [rubber_constant("C10"), rubber_constant("C01"), poisson(), alpha_center(1)]
+    rates = rates_by(run.mesh, run.states[-1].x, PRESSURE, wanted)
+    for parameter, rate, step in zip(wanted, rates, (1e-2, 1e-2, 1e-4, 1e-3), strict=True):
+        after, before = (
+            solve_near(parameter.change(actuator, by), run, PRESSURE).states[-1]
+            for by in (step, -step)
+        )
+        line = (after.shape.facing - before.shape.facing) / (2.0 * step)
+        np.testing.assert_allclose(rate.facing, line, atol=2e-3 * np.abs(line).max())
+        volume = (after.volume - before.volume) / (2.0 * step)
+        assert rate.volume == pytest.approx(volume, rel=2e-3)
+
+
+def test_a_constant_that_is_no_number_is_refused() -> None:
+    actuator = replace(two((270.0, 90.0)), rubber=RUBBERS["ogden"])
+    with pytest.raises(ValueError, match="mu of ogden is not one number"):
+        rubber_constant("mu").change(actuator, 0.1)
 
 
 def test_signs() -> None:

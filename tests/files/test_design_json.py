@@ -43,7 +43,7 @@ def test_has_the_fields_of_the_contract() -> None:
     assert list(TREE) == [
         "schema", "source", "tube", "gauze", "formula", "pressure_bar", "joints", "base_pose",
         "fit", "feasible", "verified", "warnings", "method", "sensitivity", "built", "operate_bar",
-        "trim", "model", "threads", "threads_off_mm", "clamp", "seal",
+        "trim", "model", "threads", "threads_off_mm", "clamp", "seal", "neighbours",
     ]  # fmt: skip
     assert TREE["schema"] == "profiletool.design/3"
     assert list(TREE["joints"][0]) == [

@@ -17,6 +17,7 @@ from profiletool.errors import UnreadableInput
 from profiletool.files.design_json import from_json, load_design, to_json
 from profiletool.records.built import BuildErrors, Built, BuiltMisfit, BuiltPart, TrimPoint
 from profiletool.records.design import Design, Misfit, Sensitivity
+from profiletool.records.neighbour import Neighbour
 from profiletool.records.seal import proven, sealed
 from profiletool.template.layout import build_sheet
 from profiletool.verdict.summary import headline, summary
@@ -39,6 +40,10 @@ def made() -> Design:
             built=Built(BuildErrors(), off, off, (BuiltPart("wall", 2.0, 0.1),)),
             trim=(TrimPoint(1.9, (1.0, 2.0), (30.0,) * 6),),
             threads_off_mm=off,
+            neighbours=(
+                Neighbour("as chosen", 6, 1.9, 0.2, 1.0, "joint response"),
+                Neighbour("lower pressure", 6, 1.7, 0.3, None, "FE"),
+            ),
         )
     )
 
@@ -150,6 +155,16 @@ def test_an_older_file_cannot_be_known_to_be_verified() -> None:
     read = from_json(json.dumps(tree), "x")
     assert not read.verified
     assert "nothing tells whether it was changed" in read.warnings[0]
+
+
+def test_a_file_from_before_there_were_neighbours_is_verified_still() -> None:
+    tree = json.loads(to_json(sealed(replace(DESIGN, neighbours=()))))
+    del tree["neighbours"]
+    read = from_json(json.dumps(tree), "x")
+    assert proven(read)
+    # To take them out of a file that has them is an edit, though.
+    text = edited(("neighbours",), lambda holder, key: holder.__setitem__(key, []))
+    assert not proven(from_json(text, "x"))
 
 
 @pytest.mark.parametrize(

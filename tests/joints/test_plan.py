@@ -19,9 +19,11 @@ from profiletool.joints.correction.by_model import BendingForwardModel
 from profiletool.joints.correction.correct import CannotBend, Iterate
 from profiletool.joints.correction.parameters import PosedChain
 from profiletool.joints.optimal_method import angles, optimal_plan
+from profiletool.joints.windows import off_mesh
 from profiletool.pipeline import Request, Result, run
 from profiletool.records.design import Design, Fit, Misfit
 from profiletool.records.frames import Pose, Shape
+from profiletool.records.making import request_of
 from profiletool.records.profile import Profile
 from profiletool.records.request import TubeSpec
 from profiletool.subject.find import Subject, find_subject
@@ -63,6 +65,41 @@ def test_angles_of_a_known_shape(sign: float) -> None:
     shape = deform(bends, 110.0, 10.0, Pose(3.0, -2.0, 170.0), sign)
     chain = Chain(centre, openF, np.full(5, 2.0), centers_of(turns), 110.0)
     assert angles(shape, chain) == pytest.approx(sign * turns, abs=1e-9)
+
+
+@pytest.mark.parametrize("method", [pytest.param("optimal", marks=pytest.mark.slow), "paper"])
+def test_a_given_pressure_is_kept(samples: Path, method: str) -> None:
+    asked = {"pressure_bar": 0.77, "method": method, "verify": False}
+    result = run(request_of(samples / "finger_rest.csv", asked), silent)
+    assert result.design.pressure_bar == pytest.approx(0.77, abs=1e-9)
+    assert not any(one.what == "lower pressure" for one in result.design.neighbours)
+
+
+def test_a_given_pressure_that_no_joint_is_known_at(samples: Path) -> None:
+    with pytest.raises(UsageError, match=r"0\.1 bar is not within the 0\.2 to 2\.2 bar"):
+        run(request_of(samples / "finger_rest.csv", {"pressure_bar": 0.1}), silent)
+
+
+def test_neighbours_are_told_with_the_choice(result: Result) -> None:
+    chosen, *others = result.design.neighbours
+    count = len(result.design.joints)
+    assert (chosen.what, chosen.joints) == ("as chosen", count)
+    assert chosen.rms_mm == pytest.approx(result.plan.choice.misfit.rms_mm, abs=1e-4)
+    known = {one.what: one for one in others}
+    assert known["one joint fewer"].joints == count - 1
+    assert known["one joint more"].joints == count + 1
+    assert known["lower pressure"].pressure_bar <= 0.9 * chosen.pressure_bar + 1e-3
+    assert {one.by for one in result.design.neighbours} == {"joint response"}
+    assert all(one.expected_rms_mm > one.rms_mm for one in result.design.neighbours)
+    assert known["one joint fewer"].rms_mm > chosen.rms_mm
+
+
+@pytest.mark.slow
+def test_places_fall_on_whole_meshes_where_that_costs_little(result: Result) -> None:
+    design = result.design
+    assert off_mesh(design.joints, design.gauze) == ()
+    fine = run(replace(result.request, place_step_mm=1.0), silent).design.fit.response
+    assert design.fit.response.rms_mm < fine.rms_mm + 0.1
 
 
 def test_angles_of_a_tube_that_bends_in_its_wrapped_sectors_too() -> None:

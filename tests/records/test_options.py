@@ -35,6 +35,20 @@ def test_every_field_of_a_request_is_one_option() -> None:
     assert len({row.field for row in DESIGN}) == len({row.flag for row in DESIGN}) == len(DESIGN)
 
 
+@pytest.mark.parametrize(
+    ("asked", "says"),
+    [
+        ({"pressure_bar": 2.2}, "2.2 bar is more than the highest, 2 bar: lower it, or raise"),
+        ({"pressure_bar": 1.5, "max_pressure_bar": 1.2}, "more than the highest, 1.2 bar"),
+        ({"pressure_bar": 1.234}, "comes in steps of 0.01 bar, not 1.234"),
+        ({"pressure_bar": 0.0}, "must be a number above 0"),
+    ],
+)
+def test_a_pressure_that_cannot_be_kept(asked: dict[str, float], says: str) -> None:
+    with pytest.raises(UsageError, match=says):
+        check_request(request_of(Path("a.png"), asked))
+
+
 def test_the_core_names_only_fields_that_have_a_flag() -> None:
     root = Path(__file__).parents[2] / "profiletool"
     for file in sorted(root.rglob("*.py")):

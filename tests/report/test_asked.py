@@ -19,7 +19,7 @@ def test_options_that_differ_are_told_and_the_main_ones_always() -> None:
     )
     changed = {o.name: (o.value, o.usual) for o in options_of(asked) if o.changed}
     assert changed == {
-        "--place-step": ("2 mm", "1 mm"),
+        "--place-step": ("2 mm", "the gauze's pitch, or 1 mm"),
         "--max-pressure": ("1.2 bar", "2 bar"),
         "--verify": ("no", "yes"),
     }

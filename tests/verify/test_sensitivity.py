@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fem.errors import FemError
-from fem.sensitivity import Sensitivities
+from fem.rates import Sensitivities
 from profiletool.files.design_json import load_design
 from profiletool.joints.closest import closest_points, target_points
 from profiletool.profile.curve import arc_length

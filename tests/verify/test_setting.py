@@ -209,7 +209,7 @@ def test_rubber_of_another_stiffness_by_fe(samples: Path, stiffer: float) -> Non
     run = run_design(paper, paper.pressure_bar)
     wanted = run.verification.last.shape.facing
     design = check(paper, wanted).design
-    design = replace(design, trim=trim_of(design, run))
+    design = sealed(replace(design, trim=trim_of(design, run)))
     nominal = actuator_of(design)
     law = nominal.rubber
     other = fem.MooneyRivlin(stiffer * law.C10, stiffer * law.C01, stiffer * law.K)

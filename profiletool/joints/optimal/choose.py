@@ -15,9 +15,10 @@ from profiletool.bending.model import Chain, Model
 from profiletool.errors import Infeasible, NoObject
 from profiletool.joints.bounds import Limits, cuts_of, limits_of
 from profiletool.joints.correction.parameters import PosedChain
-from profiletool.joints.expected import BUILT_WEIGHT, POLISHED_WEIGHT, Aim, ErrorSizes, Expected
-from profiletool.joints.misfit import is_good, score
+from profiletool.joints.expected import POLISHED_WEIGHT, Aim, ErrorSizes, Expected
+from profiletool.joints.misfit import is_good
 from profiletool.joints.optimal.lines import FAR, FINE, WIDE
+from profiletool.joints.optimal.paths import QUICK, around, best_of, score_of
 from profiletool.joints.optimal.polish import Goal, Polished, at_bound, goal_of, judge, polish
 from profiletool.joints.optimal.search import MOST_JOINTS, SearchResult, search
 from profiletool.records.design import Misfit
@@ -32,7 +33,6 @@ _FAR_MM = 3.0
 _HOPEFUL = 3.0  # a path this many times the tolerance off may be polished into it
 _WORTH = 0.1  # of the tolerance: what one more joint must bring
 _RIVALS = 3  # paths polished for one number of joints
-_RUNS, _QUICK = 12, 4  # steps of a polish, and of one that only tells whether it is worth it
 _NEAR = 1.3  # times the tolerance, after a quick polish: worth a long one
 _MOST_POLISHED = 7  # numbers of joints that are polished
 _SWAPS = 3
@@ -74,6 +74,8 @@ class ChoiceOptions:
         Whether the base may leave the profile's start tangent.
     sizes : ErrorSizes or None
         Of a build's errors; the nominal shape alone counts where None.
+    neighbours : bool
+        Whether to look at what one joint fewer, one more, or less pressure would give.
     """
 
     tolerance_mm: float = TOLERANCE_MM
@@ -81,13 +83,15 @@ class ChoiceOptions:
     count: int | None = None
     base_free: bool = False
     sizes: ErrorSizes | None = None
+    neighbours: bool = False
 
 
 @dataclass(frozen=True)
 class Choice:
     """The chosen actuator as the model bends it.
 
-    ``depth`` is how deep it lies in the object at most, mm; ``pressure`` in MPa.
+    ``depth`` is how deep it lies in the object at most, mm; ``pressure`` in MPa. ``neighbours``
+    holds polished actuators by name: "as chosen" first, then those around it.
     """
 
     chain: Chain
@@ -98,6 +102,7 @@ class Choice:
     depth: float
     trade_off: TradeOff
     limits: Limits
+    neighbours: tuple[tuple[str, Polished], ...] = ()
 
 
 def choose(
@@ -147,11 +152,15 @@ def choose(
     polished[count - 1] = np.fmin(polished[count - 1], best.misfit.rms_mm)
     at = best.posed
     trade_off = TradeOff(searches[0].pressure, _rms(searches, reached), polished)
+    beside = []
+    if reached is profile and options.neighbours:
+        beside = [("as chosen", best), *around(best, searches, model, goal)]
     if reached is not profile:
         best = judge(at, model, goal_of(profile, limits, aim))
     return Choice(
-        at.chain, at.pressure, at.pose, best.shape, best.misfit, best.depth, trade_off, limits
-    )
+        at.chain, at.pressure, at.pose, best.shape, best.misfit, best.depth, trade_off, limits,
+        tuple(beside),
+    )  # fmt: skip
 
 
 def _first_part(profile: Profile, length: float) -> Profile:
@@ -220,16 +229,16 @@ def _fewest(
         numbers = np.flatnonzero(hopeful & useful)[:_MOST_POLISHED] + 1
     best: dict[int, Polished] = {}
     for n in (int(n) for n in numbers):
-        best[n] = _best_of(searches, model, goal, n, rivals=1, runs=_QUICK)
+        best[n] = best_of(searches, model, goal, n, rivals=1, runs=QUICK)
         near = best[n].misfit.rms_mm <= _NEAR * options.tolerance_mm
         if near:
-            best[n] = _best_of(searches, model, goal, n, _RIVALS)
+            best[n] = best_of(searches, model, goal, n, _RIVALS)
         polished[n - 1] = best[n].misfit.rms_mm
         good = is_good(best[n].misfit, best[n].depth, options.tolerance_mm, options.interference_mm)
         if near and good:
             return best[n], polished
-    chosen = min(best, key=lambda n: _score(best[n], goal) + worth * n)
-    full = _best_of(searches, model, goal, chosen, _RIVALS)
+    chosen = min(best, key=lambda n: score_of(best[n], goal) + worth * n)
+    full = best_of(searches, model, goal, chosen, _RIVALS)
     polished[chosen - 1] = full.misfit.rms_mm
     return full, polished
 
@@ -238,31 +247,6 @@ def _nearest_count(rms: FloatArray, count: int) -> int:
     """Give the number of joints nearest below ``count`` that there is a path for."""
     reachable = np.flatnonzero(np.isfinite(rms[:count]))
     return int(reachable[-1]) + 1 if reachable.size else count
-
-
-def _score(polished: Polished, goal: Goal) -> float:
-    """Say what decides between polished actuators, mm: the shape, and what errors cost."""
-    nominal = score(polished.misfit, polished.depth, goal.aim.interference_mm)
-    return float(np.hypot(nominal, np.sqrt(BUILT_WEIGHT) * polished.errors))
-
-
-def _best_of(
-    searches: list[SearchResult],
-    model: Model,
-    goal: Goal,
-    joints: int,
-    rivals: int,
-    runs: int = _RUNS,
-) -> Polished:
-    """Polish the best paths of so many joints, of all searches and pressures."""
-    cost = [
-        (c, k, p) for k, one in enumerate(searches) for p, c in enumerate(one.cost[:, joints - 1])
-    ]
-    candidates = []
-    for _, k, pressure in sorted(c for c in cost if np.isfinite(c[0]))[:rivals]:
-        start = searches[k].posed_chain(pressure, joints, model, goal.profile, goal.limits)
-        candidates.append(polish(start, model, goal, runs))
-    return min(candidates, key=lambda polished: _score(polished, goal))
 
 
 def _swapped(best: Polished, model: Model, goal: Goal, cuts: FloatArray) -> Polished:
@@ -277,9 +261,9 @@ def _swapped(best: Polished, model: Model, goal: Goal, cuts: FloatArray) -> Poli
                 openF = chain.openF.copy()
                 openF[k] = cuts[index]
                 posed = replace(best.posed, chain=replace(chain, openF=openF))
-                candidates.append(polish(_fitting(posed, goal.limits), model, goal, _QUICK))
-        better = min(candidates, key=lambda polished: _score(polished, goal), default=best)
-        if _score(better, goal) >= _score(best, goal) - 1e-6:
+                candidates.append(polish(_fitting(posed, goal.limits), model, goal, QUICK))
+        better = min(candidates, key=lambda polished: score_of(polished, goal), default=best)
+        if score_of(better, goal) >= score_of(best, goal) - 1e-6:
             break
         best = better
     return best

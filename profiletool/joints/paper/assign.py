@@ -44,8 +44,15 @@ def theta_table(formula: Formula, spec: TubeSpec) -> Table:
             f"no whole number of {pitch:g} mm meshes lies within the {low:g} to {high:g} mm of "
             f'openF that formula "{formula.name}" holds for'
         )
-    most = min(spec.max_pressure_bar, formula.pressure_range_bar[1])
-    least = formula.pressure_range_bar[0]
+    least, most = formula.pressure_range_bar
+    if spec.pressure_bar is not None:
+        if not least <= spec.pressure_bar <= most:
+            raise OutOfRange(
+                f"`pressure_bar` {spec.pressure_bar:g} bar is not within the {least:g} to {most:g} "
+                f'bar of formula "{formula.name}"'
+            )
+        return make_table(formula, openF_mm=cuts.tolist(), pressures_bar=[spec.pressure_bar])
+    most = min(spec.max_pressure_bar, most)
     pressures = [row for row in PRESSURES_BAR if least <= row <= most + 1e-9]
     if not pressures:
         raise OutOfRange(f"the table begins at {PRESSURES_BAR[0]:g} bar, above {most:g} bar")
