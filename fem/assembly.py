@@ -167,8 +167,7 @@ class System:
     ) -> tuple[Forces, Inverse | None]:
         """Give forces and factored tangent at x under a pressure, MPa; None where least_J <= 0.
 
-        ``double``: not in single precision, where the step has an error of a tenth and more along
-        the soft bending of a long tube.
+        ``double``: not in single precision, where a step is off along soft bending.
         """
         self.version += 1
         self._use(SINGLE if self._single and not double else DOUBLE)
