@@ -92,7 +92,7 @@ class _Run:
         self._free, self._contact = free, contact
         self._tolerance, self._settle = tolerance, settle
         self._mesh = free.mesh
-        self.system = System(free.mesh, threads, [contact])
+        self.system = System(free.mesh, threads, [contact], single=True)
         self._chart = Chart(free.mesh)
         self._approach = Approach(free.mesh, free.states, contact.obstacle)
         self.finder = Finder(self.system, self._chart, contact)

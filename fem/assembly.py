@@ -113,11 +113,11 @@ class System:
         self.version = 0
         middle = mesh.layers // 2
         own = () if mesh.actuator.weight is None else (Deadweight,)
-        self.middle, items = middle, (*ITEMS, *own, *extra)
-        self._items, self._single = items, single
+        self.middle, self._single = middle, single
+        self._items = (*ITEMS, *own, *extra)
         self._halves: dict[DType, _Halves] = {}
         self._parts: tuple[Part, ...] = ()
-        self._use(DOUBLE if not single else SINGLE)
+        self._use(SINGLE if single else DOUBLE)
         self._pool = ThreadPoolExecutor(1) if threads > 1 else None
 
     def _use(self, dtype: DType) -> None:
@@ -167,7 +167,8 @@ class System:
     ) -> tuple[Forces, Inverse | None]:
         """Give forces and factored tangent at x under a pressure, MPa; None where least_J <= 0.
 
-        ``double``: not in single precision, where a step is off along soft bending.
+        ``double`` asks for double precision: a step in single precision is off along the soft
+        bending of a long tube.
         """
         self.version += 1
         self._use(SINGLE if self._single and not double else DOUBLE)

@@ -187,6 +187,12 @@ class Pressed:
         """Largest depth in the obstacle, mm; the first layer, which the clamp holds, left out."""
         return max(0.0, -float(self.gap.distance.reshape(self.area.shape)[1:].min()))
 
+    @property
+    def own_depth(self) -> float:
+        """The same beyond the layers that the clamp stiffens, where multipliers help."""
+        free = self.gap.distance.reshape(self.area.shape)[~self.clamped]
+        return max(0.0, -float(free.min(initial=0.0)))
+
     @cached_property
     def force(self) -> FloatArray:
         """Force on the obstacle by each point (L, c, q, 3), N."""

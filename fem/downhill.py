@@ -17,6 +17,7 @@ from fem.slack import Switching
 DEPTH_MM = 0.01  # that a reported state may lie in the obstacle
 _MOST = 25  # factorisations after which a start is given up
 _PASSES = 6  # of multipliers
+_TIGHT, _NEAR, _SURE = 1e-4, 1e-3, 0.01  # as in `fem.newton`
 _TURN = 0.3  # rad, the most that a section turns in one step
 _MOVE_MM = 4.0  # the most that a node moves in one step
 _DECREASE = 1e-4  # of the energy, over what its slope promises
@@ -78,8 +79,10 @@ class Finder:
         system, outcome, residual = self._system, "residual", np.inf
         iterations = factored = 0
         found = None
+        tight = tolerance < _TIGHT
         while factored < _MOST:
-            forces, inverse = system.factor(pose.x, pressure)
+            double = tight and residual < _NEAR
+            forces, inverse = system.factor(pose.x, pressure, double=double)
             factored += 1
             if inverse is None:
                 outcome = "inverted"
@@ -93,7 +96,9 @@ class Finder:
                 pose, forces = moved
                 iterations += 1
                 residual = relative_residual(forces, pressure)
-            if residual <= tolerance and not inverse.negative:
+            # As in `fem.newton.correct`: single precision may leave a soft motion over.
+            enough = tolerance if double or not tight else _SURE * tolerance
+            if residual <= enough and not inverse.negative:
                 outcome = "converged"
                 flow = inverse.solve(forces.volume_gradient)
                 found = Found(pressure, pose, forces, flow, residual, factored)
@@ -139,7 +144,7 @@ class Finder:
         mesh, contact, work = self._system.mesh, self._contact, 0.0
         pressed = pressed_of(contact, mesh, found.pose.x)
         for _ in range(_PASSES):
-            if pressed.depth <= DEPTH_MM:
+            if pressed.own_depth <= DEPTH_MM:
                 break
             before = contact.offset
             contact.update(pressed)

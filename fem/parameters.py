@@ -77,7 +77,7 @@ def poisson() -> Parameter:
 
 
 def alpha_center(number: int) -> Parameter:
-    """By the middle of a window's uncut sector; of a whole tube only, not of a half model."""
+    """By the middle of a window's uncut sector; the model must be of the whole tube."""
 
     def change(actuator: Actuator, amount: float) -> Actuator:
         windows = list(actuator.windows)

@@ -113,8 +113,11 @@ def rates_by(
     Raises
     ------
     FemError
-        As `sensitivities` does.
+        As `sensitivities` does, and where a parameter leads out of the plane of a half model.
     """
+    for parameter in parameters:
+        if mesh.half and not parameter.change(mesh.actuator, parameter.step).in_plane:
+            raise FemError("half of a tube cannot leave its plane: model it whole")
     changes = [(parameter,) for parameter in parameters]
     return tuple(_rates(mesh, x, pressure, changes, threads, True, extra)[1:])
 

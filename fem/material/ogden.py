@@ -108,8 +108,7 @@ class Ogden(Quadratic):
             right[3 + number] = sums[number] * left[3 + number]
             right[6 + number] = differences[number] * left[6 + number]
         for number, (i, m) in enumerate(PAIRS):
-            entry = np.einsum("rj...,rn...->jn...", left[:, i], right[:, m])
-            A[number] = entry
+            A[number] = np.einsum("rj...,rn...->jn...", left[:, i], right[:, m])
         add_volumetric(A, k, p, stiffness)
         return A
 

@@ -17,7 +17,7 @@ from profiletool.joints.bounds import limits_of
 from profiletool.joints.correction.correct import ForwardModel
 from profiletool.joints.correction.parameters import PosedChain
 from profiletool.joints.layout import Layout
-from profiletool.joints.optimal_method import angles, corrected, model_of, places_of
+from profiletool.joints.optimal_method import angles, correction, model_of, places_of
 from profiletool.joints.plan import Plan
 from profiletool.joints.windows import off_mesh
 from profiletool.records.design import Design, Joint
@@ -119,7 +119,7 @@ def plan_again(
     if forward is not None:
         limits = limits_of(model, request.tube, request.base_free)
         request = on_mesh(request, design)
-        posed = corrected(request, forward, profile, model, (posed, limits), say)
+        posed = correction(request, forward, profile, model, (posed, limits), say).best.posed
     chain, pressure_bar = posed.chain, BAR_PER_MPA * posed.pressure
     joints = _joints(design, chain, pressure_bar, formula)
     layout = Layout(joints, float(chain.centre[0]), chain.length, pressure_bar, posed.pose)

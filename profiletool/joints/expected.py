@@ -161,11 +161,25 @@ class Expected:
     weight: float = BUILT_WEIGHT
 
     def rms_mm(self, posed: PosedChain, shape: Shape, closest: ClosestPoints) -> float:
-        """Give the expected motion of the line, RMS over builds and points, without any weight."""
+        """Give how far errors and the convention move the line, RMS, mm, without any weight."""
         arms = levers(posed, shape, closest)
         own, common = self._joints(posed, posed.chain.alpha, posed.pressure)
         together = np.sum(np.mean((common @ arms) ** 2, axis=1))
         return float(np.sqrt(own**2 @ np.mean(arms**2, axis=1) + together))
+
+    def trimmed_mm(self, posed: PosedChain, shape: Shape, closest: ClosestPoints) -> float:
+        """Give how far a build's errors move the line once the pressure is set on it, RMS, mm.
+
+        As `profiletool.verify.built` has it by finite elements: what each joint's own errors move
+        along the pressure's direction is taken out, and how well the pressure is set remains.
+        """
+        chain, arms = posed.chain, levers(posed, shape, closest)
+        slopes = slopes_of(self.model, chain.openF, chain.alpha, posed.pressure)
+        swing = (chain.sense * slopes.pressure) @ arms
+        along = arms @ swing / max(float(swing @ swing), _LEAST**2)
+        left = np.mean((arms - np.outer(along, swing)) ** 2, axis=1)
+        own = angle_variance(slopes, self.sizes) @ left
+        return float(np.sqrt(own + self.sizes.pressure**2 * np.mean(swing**2)))
 
     def rows(
         self, parameters: Parameters, vector: FloatArray, shape: Shape, closest: ClosestPoints

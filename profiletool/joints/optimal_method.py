@@ -122,8 +122,8 @@ def _standing(
         if forward is None or hopeless:
             return posed, choice, tuple(notes), hopeless
         try:
-            posed = corrected(steps, forward, profile, model, start_of(choice), say_fe)
-            return posed, choice, tuple(notes), ""
+            found = correction(steps, forward, profile, model, start_of(choice), say_fe)
+            return found.best.posed, choice, tuple(notes), ""
         except CannotBend as problem:
             notes.append(f"the first choice of joints did not stand by FE: {problem}")
             say(notes[-1])
@@ -222,18 +222,6 @@ def start_of(choice: Choice) -> tuple[PosedChain, Limits]:
     return PosedChain(choice.chain, choice.pressure, choice.pose), choice.limits
 
 
-def corrected(
-    request: Request,
-    forward: ForwardModel[S],
-    profile: Profile,
-    model: Model,
-    start: tuple[PosedChain, Limits],
-    say: Callable[[str], None],
-) -> PosedChain:
-    """Correct an actuator by a forward model, in numbers that can be built."""
-    return correction(request, forward, profile, model, start, say).best.posed
-
-
 def correction(
     request: Request,
     forward: ForwardModel[S],
@@ -242,7 +230,7 @@ def correction(
     start: tuple[PosedChain, Limits],
     say: Callable[[str], None],
 ) -> Corrected[S]:
-    """Correct an actuator as `corrected`, with the state that it was left in."""
+    """Correct an actuator by a forward model, in numbers that can be built."""
     posed, limits = start
     parameters, aim = parameters_of(posed.chain, profile, limits), _aim(request, model)
     vector, steps = parameters.pack(posed), _step_sizes(request)

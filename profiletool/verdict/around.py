@@ -13,7 +13,9 @@ from dataclasses import replace
 import numpy as np
 
 from profiletool.joints.again import on_mesh
+from profiletool.joints.closest import closest_points, target_points
 from profiletool.joints.correction.correct import CannotBend
+from profiletool.joints.expected import Expected, error_sizes
 from profiletool.joints.misfit import misfit
 from profiletool.joints.optimal.polish import Polished
 from profiletool.joints.optimal_method import correction
@@ -45,14 +47,13 @@ def _neighbours(attempt: Draft) -> Iterator[Neighbour]:
 
 
 def _by_model(what: str, polished: Polished, attempt: Draft) -> Neighbour:
-    nominal, errors = polished.misfit.rms_mm, polished.errors
-    expected = None if attempt.request.objective == "nominal" else float(np.hypot(nominal, errors))
+    nominal, errors = polished.misfit.rms_mm, _errors_mm(polished, attempt)
     return Neighbour(
         what=what,
         joints=len(polished.posed.chain.openF),
         pressure_bar=round(BAR_PER_MPA * polished.posed.pressure, _DECIMALS),
         rms_mm=round(nominal, _DECIMALS),
-        expected_rms_mm=None if expected is None else round(expected, _DECIMALS),
+        expected_rms_mm=_expected(nominal, errors),
         by="formula" if attempt.plan.by == "formula" else "joint response",
     )
 
@@ -73,13 +74,24 @@ def _by_fe(found: Neighbour, polished: Polished, attempt: Draft, run: Run) -> Ne
     except CannotBend:
         return found
     nominal = misfit(best.shape, attempt.profile).rms_mm
-    expected = None
-    if found.expected_rms_mm is not None:
-        expected = round(float(np.hypot(nominal, polished.errors)), _DECIMALS)
     return replace(
         found,
         pressure_bar=round(BAR_PER_MPA * best.posed.pressure, _DECIMALS),
         rms_mm=round(nominal, _DECIMALS),
-        expected_rms_mm=expected,
+        expected_rms_mm=_expected(nominal, _errors_mm(polished, attempt)),
         by="FE",
     )
+
+
+def _errors_mm(polished: Polished, attempt: Draft) -> float | None:
+    """Give what a build's errors cost once the pressure is set; None for perfect parts."""
+    request, profile, model = attempt.request, attempt.profile, attempt.plan.model
+    sizes = error_sizes(request.build, request.tube)
+    if request.objective == "nominal" or sizes is None or model is None:
+        return None
+    closest = closest_points(polished.shape.facing, target_points(profile), profile.sign)
+    return Expected(model, sizes).trimmed_mm(polished.posed, polished.shape, closest)
+
+
+def _expected(nominal: float, errors: float | None) -> float | None:
+    return None if errors is None else round(float(np.hypot(nominal, errors)), _DECIMALS)

@@ -32,7 +32,8 @@ from profiletool.verify.tube import tube_of
 class FeForwardModel:
     """A forward model by finite elements of the whole actuator.
 
-    ``told`` is called for each; ``known`` is the solution of a similar one to begin from.
+    ``told`` is called before each is bent; ``known`` is the solution of a similar one to begin
+    from.
     """
 
     def __init__(

@@ -107,10 +107,9 @@ def test_the_penalty_does_not_matter(free: Solution) -> None:
 def test_more_pressures_asked_change_nothing(free: Solution) -> None:
     few = solve_against(free, FLOOR, [0.05, 0.06])
     many = solve_against(free, FLOOR, [0.045, 0.05, 0.055, 0.06])
-    for k in (-1,):
-        assert normal(many, k) == pytest.approx(normal(few, k), rel=0.005)
-        tips = [run.states[k].shape.centre[-1] for run in (few, many)]
-        np.testing.assert_allclose(*tips, atol=0.005)
+    assert normal(many) == pytest.approx(normal(few), rel=0.005)
+    tips = [run.states[-1].shape.centre[-1] for run in (few, many)]
+    np.testing.assert_allclose(*tips, atol=0.01)  # the depth that is let pass
 
 
 def test_where_nothing_is_in_the_way_the_tube_is_free(free: Solution) -> None:

@@ -36,6 +36,7 @@ def test_with_force_the_last_stays_whole(tmp_path: Path) -> None:
     assert leftovers(tmp_path) == []
 
 
+@pytest.mark.slow
 def test_a_reader_meets_whole_folders_only(tmp_path: Path) -> None:
     write_folder(tmp_path / "out", dict.fromkeys(["design.json"], b"x"), force=False)
     writer = Writer(tmp_path / "out", "a", 60, force=True)

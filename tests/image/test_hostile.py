@@ -93,12 +93,13 @@ def test_known_colours_of_unusual_files(shared: Path) -> None:
     assert set(np.unique(background)) == {0, 255}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("mode", "name", "side"),
     [
         ("CMYK", "a.jpg", 8000),
-        pytest.param("RGBA", "a.png", 8000, marks=pytest.mark.slow),
-        pytest.param("RGBA", "a.webp", 6000, marks=pytest.mark.slow),
+        ("RGBA", "a.png", 8000),
+        ("RGBA", "a.webp", 6000),
     ],
 )
 def test_largest_picture_fits_in_a_gibibyte(

@@ -113,6 +113,37 @@ def test_rows_add_to_the_expected_square_and_differentiate_it() -> None:
         assert rows.jacobian[:, k] == pytest.approx(slope, rel=0.05, abs=1e-3 * np.abs(slope).max())
 
 
+def test_sectors_off_together_are_one_row() -> None:
+    sizes = ErrorSizes(alpha=0.1, openF=0.0, pressure=0.0)
+    shape = bent()
+    closest = closest_to_itself(shape)
+    limits = Limits(MODEL.alpha, (0.02, 0.2), 2.0, 4.0, 10.0, 250.0)
+    numbers = Parameters(CHAIN.openF, CHAIN.alpha_center, 91.0, (0.0, 0.0), -np.pi / 2, 1.0, limits)
+    rows = Expected(MODEL, sizes, 1.0).rows(numbers, numbers.pack(POSED), shape, closest)
+    slopes = CHAIN.sense * slopes_of(MODEL, CHAIN.openF, CHAIN.alpha, 0.14).alpha
+    moved = 0.1 * slopes @ levers(POSED, shape, closest)
+    assert rows.values[-1] == pytest.approx(np.sqrt(np.mean(moved**2)), rel=1e-6)
+    assert rows.values[-2] < 1e-6  # the pressure is as it should be
+
+
+def test_setting_the_pressure_takes_its_direction_out() -> None:
+    """Of many builds at random, each shifted along the pressure's field as fits best."""
+    shape = bent()
+    closest, rng = closest_to_itself(shape), np.random.default_rng(3)
+    arms = levers(POSED, shape, closest)
+    slopes = slopes_of(MODEL, CHAIN.openF, CHAIN.alpha, 0.14)
+    field = (CHAIN.sense * slopes.pressure) @ arms
+    unit = field / np.linalg.norm(field)
+    sigma = np.sqrt(0.1**2 * slopes.alpha**2 + 0.5**2 * slopes.openF**2)
+    moved = (rng.standard_normal((40_000, 2)) * sigma) @ arms
+    moved -= np.outer(moved @ unit, unit)
+    moved += rng.standard_normal((40_000, 1)) * (0.002 * field)
+    expected = Expected(MODEL, ErrorSizes(alpha=0.1, openF=0.5, pressure=0.002))
+    found = expected.trimmed_mm(POSED, shape, closest)
+    assert found == pytest.approx(np.sqrt(np.mean(moved**2)), rel=0.02)
+    assert found < 0.9 * expected.rms_mm(POSED, shape, closest)
+
+
 def test_nothing_off_is_no_errors() -> None:
     assert error_sizes(NOTHING, TubeSpec()) is None
     rubber = replace(NOTHING, rubber=10.0, wall=3.0)  # set away with the pressure

@@ -23,20 +23,9 @@ from profiletool.subject.find import find_subject
 from profiletool.verdict import ways
 from profiletool.verdict.trials import Family, Situation, Trial, alone, promising, together
 from tests.calls import call, error_of
+from tests.curves import turning_line
 
-
-def arcs(*pieces: tuple[float, float]) -> np.ndarray:
-    """A line of (length, turn in deg) pieces, from heading straight down."""
-    points, heading = [np.zeros(2)], -np.pi / 2
-    for length, turn in pieces:
-        for _ in range(80):
-            heading += np.radians(turn) / 160
-            points.append(points[-1] + length / 80 * np.array([np.cos(heading), np.sin(heading)]))
-            heading += np.radians(turn) / 160
-    return np.array(points)
-
-
-S_CURVE = arcs((37.5 * np.pi, 270.0), (37.5 * np.pi, -270.0))
+S_CURVE = turning_line((37.5 * np.pi, 270.0), (37.5 * np.pi, -270.0))
 
 
 def situation(points: np.ndarray, **asked: Any) -> Situation:
@@ -148,7 +137,7 @@ def test_the_option_that_a_refusal_ends_with_works(tmp_path: Path) -> None:
 
 
 def test_finite_elements_are_claimed_only_where_they_ran(monkeypatch: pytest.MonkeyPatch) -> None:
-    points = arcs((30.0, 0.0), (40.0, 40.0), (20.0, 0.0))
+    points = turning_line((30.0, 0.0), (40.0, 40.0), (20.0, 0.0))
     at = situation(points, verify=True, method="paper", tolerance_mm=3.0)  # quick to plan
     trial = Trial({"start_pct": 4}, 0.04)
     alone_way = ways._way(at, trial, None)

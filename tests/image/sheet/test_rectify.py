@@ -83,6 +83,7 @@ def test_sizes_from_all_poses_and_random_ones() -> None:
     assert max(one.measured.measured_share for one in trials) < 0.012
 
 
+@pytest.mark.slow
 def test_flat_disc_keeps_its_size_under_tilt_and_distortion() -> None:
     sheet = paper(A4).copy()
     cv2.circle(sheet, (1050, 1485), 300, 0.2, -1, cv2.LINE_AA)

@@ -28,6 +28,7 @@ from profiletool.records.profile import Profile
 from profiletool.records.request import TubeSpec
 from profiletool.records.units import FloatArray
 from profiletool.verdict.missed import missed, reasons, tightest_radius
+from tests.curves import turning_line
 
 MODEL = FormulaModel(load_formula(), 10.0)
 SPEC = TubeSpec()
@@ -37,13 +38,7 @@ CUTS = cuts_of(MODEL, SPEC)
 
 def bent_line(*pieces: tuple[float, float]) -> Profile:
     """Profile of (length, turn in deg) pieces, from heading straight down; right turns negative."""
-    points, heading = [np.zeros(2)], -np.pi / 2
-    for length, turn in pieces:
-        for _ in range(100):
-            heading += np.radians(turn) / 200
-            points.append(points[-1] + length / 100 * np.array([np.cos(heading), np.sin(heading)]))
-            heading += np.radians(turn) / 200
-    return profile_of_line(np.array(points), Reach("left", 10.0))
+    return profile_of_line(turning_line(*pieces), Reach("left", 10.0))
 
 
 BOWL = bent_line((20.0, 0.0), (40.0, 70.0), (20.0, 0.0))

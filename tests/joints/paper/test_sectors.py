@@ -13,6 +13,7 @@ from profiletool.joints.paper.sectors import BendingSector, discretise
 from profiletool.profile.target import Reach, profile_of_line, profile_of_object
 from profiletool.records.profile import Profile
 from profiletool.records.units import FloatArray
+from tests.curves import turning_line
 
 T = np.linspace(0.0, 2.0 * np.pi, 1441)[:-1]
 CIRCLE = 30.0 * np.column_stack([np.cos(T), np.sin(T)])
@@ -28,13 +29,7 @@ RULES = Rules(
 
 def bent_line(*pieces: tuple[float, float]) -> Profile:
     """Profile of (length, turn in deg) pieces, from heading straight down; right turns negative."""
-    points, heading = [np.zeros(2)], -np.pi / 2
-    for length, turn in pieces:
-        for _ in range(200):
-            heading += np.radians(turn) / 400
-            points.append(points[-1] + length / 200 * np.array([np.cos(heading), np.sin(heading)]))
-            heading += np.radians(turn) / 400
-    return profile_of_line(np.array(points), Reach("left", 10.0))
+    return profile_of_line(turning_line(*pieces, steps=200), Reach("left", 10.0))
 
 
 def test_one_bend_between_two_straights() -> None:
