@@ -1,8 +1,9 @@
 """Random fingers against random objects: how the runs end, and what they take.
 
 An object is the line that the free finger lies on at 80 % of its pressure, turned or extruded,
-and misplaced: by up to 5 mm along the clamped tube, and by a turn of up to 5 mm at its far end. A run must reach its pressures or name what is in the way; no state may
-lie deep in the object or lose energy without saying so.
+and misplaced: by up to 5 mm along the clamped tube, and by a turn of up to 5 mm at its far end. A
+run must reach its pressures or name what is in the way; no state may lie deep in the object or lose
+energy without saying so.
 """
 
 from __future__ import annotations
@@ -68,8 +69,8 @@ def placed(line: FloatArray, draw: np.random.Generator) -> Obstacle:
     c, s = np.cos(turn), np.sin(turn)
     points = line[0] + (line - line[0]) @ np.array([[c, s], [-s, c]])
     # Up to a mm off the clamped end, which must be free of it, and any way along it.
-    points = points + [draw.uniform(-1.0, 1.0) * MISPLACED_MM, -draw.uniform(0.1, 1.0)]
-    outline = Outline(points)
+    moved = np.array([draw.uniform(-1.0, 1.0) * MISPLACED_MM, -draw.uniform(0.1, 1.0)])
+    outline = Outline(points + moved)
     if draw.random() < 0.5:
         return Extruded(outline)
     below = np.array([0.0, points[:, 1].min() - AXIS_MM])

@@ -167,8 +167,7 @@ class System:
     ) -> tuple[Forces, Inverse | None]:
         """Give forces and factored tangent at x under a pressure, MPa; None where least_J <= 0.
 
-        ``double`` asks for double precision: a step in single precision is off along the soft
-        bending of a long tube.
+        ``double``: a step in single precision is off along the soft bending of a long tube.
         """
         self.version += 1
         self._use(SINGLE if self._single and not double else DOUBLE)
