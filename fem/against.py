@@ -80,7 +80,7 @@ def solve_against(
         finally:
             run.system.close()
     return Contacts(
-        free.mesh, tuple(run.states), tuple(run.touches), run.first_touch, run.failure,
+        free, tuple(run.states), tuple(run.touches), run.first_touch, run.failure,
         tuple(run.finder.history), time.perf_counter() - begun,
     )  # fmt: skip
 

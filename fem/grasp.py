@@ -8,7 +8,7 @@ from fem.arrays import FloatArray
 from fem.contact import Pressed
 from fem.errors import Attempt
 from fem.mesh import Mesh
-from fem.solution import State
+from fem.solution import Solution, State
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,8 @@ class Contacts:
 
     Attributes
     ----------
-    mesh : Mesh
+    free : Solution
+        The run without the obstacle.
     states : tuple of State
         At the pressures that were reached, rising. Their energy is the tube's own.
     touches : tuple of Touch
@@ -53,13 +54,18 @@ class Contacts:
     seconds : float
     """
 
-    mesh: Mesh
+    free: Solution
     states: tuple[State, ...]
     touches: tuple[Touch, ...]
     first_touch: float | None
     failure: str | None
     history: tuple[Attempt, ...]
     seconds: float
+
+    @property
+    def mesh(self) -> Mesh:
+        """The mesh of both runs."""
+        return self.free.mesh
 
     @property
     def factorisations(self) -> int:

@@ -124,6 +124,10 @@ class GripState:
         Of the deepest point in the object.
     energy_error : float
     shape : Shape
+    theta_deg : tuple of float
+        Of every joint, positive toward the object.
+    air_ml : float
+        That went in since rest.
     pad : Pad
     """
 
@@ -142,6 +146,8 @@ class GripState:
     depth_mm: float
     energy_error: float
     shape: Shape
+    theta_deg: tuple[float, ...]
+    air_ml: float
     pad: Pad
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from profiletool.records.built import mm_text
 from profiletool.records.design import Design
 from profiletool.records.grip import Grip
@@ -26,7 +28,7 @@ def gripping(grip: Grip, design: Design, target: FloatArray) -> Markup:
     """
     return joined(
         (
-            *_advice(design),
+            *_advice(grip, design),
             tag(
                 "div",
                 plotted(pressure_figure(grip, target), "contact", _CONTACT.format(_last(grip))),
@@ -50,7 +52,7 @@ def _last(grip: Grip) -> str:
     return f"{grip.states[-1].pressure_bar:.2f}"
 
 
-def _advice(design: Design) -> tuple[Markup, ...]:
+def _advice(grip: Grip, design: Design) -> tuple[Markup, ...]:
     """Say at which pressure to work, and why."""
     if design.operate_bar is None or design.built is None:
         return ()
@@ -60,9 +62,16 @@ def _advice(design: Design) -> tuple[Markup, ...]:
         f"free, at {design.pressure_bar:.2f} bar. An actuator that is stiffer than planned falls "
         "short of the object there; one that is softer is stopped by it. So a pressure above it "
         f"costs little and gains much: {mm_text(expected.in_contact)} mm RMS are to be expected "
-        f"there, and 95 % of builds lie within {mm_text(most.in_contact)} mm."
+        f"there, and 95 % of builds lie within {mm_text(most.in_contact)} mm. One finger as "
+        f"planned presses with {_normal_at(grip, design.operate_bar):.2f} N there."
     )
     return (tag("p", said),)
+
+
+def _normal_at(grip: Grip, bar: float) -> float:
+    """Interpolate the normal force, N."""
+    bars, forces = zip(*((s.pressure_bar, s.normal_N) for s in grip.states), strict=True)
+    return float(np.interp(bar, bars, forces))
 
 
 def _forces(grip: Grip) -> Markup:

@@ -183,7 +183,9 @@ def _notes(dossier: Dossier) -> list[str]:
 
 def _film(dossier: Dossier) -> Film:
     scene, found = dossier.scene, dossier.found
-    return still_of(scene.bent, scene.design) if found is None else film_of(found, scene.design)
+    if found is None:
+        return still_of(scene.bent, scene.design)
+    return film_of(found, scene.design, dossier.grip)
 
 
 def _shape(dossier: Dossier, film: Film) -> Markup:
@@ -195,6 +197,8 @@ def _shape(dossier: Dossier, film: Film) -> Markup:
             "The slider's ticks are the pressures that finite elements were run at; between them "
             "the shape is interpolated."
         )
+        if film.shown < len(film.lines) - 1:
+            said += f" Beyond {film.pressure_bar[film.shown]:.2f} bar the object is in the way."
         aside.append(tag("p", said, class_="small screen"))
     if dossier.unverified is not None:
         aside.append(tag("p", _short_of(dossier), class_="mind"))

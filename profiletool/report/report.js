@@ -11,6 +11,7 @@
   const substeps = Number(slider.dataset.substeps);
   const last = film.bar.length - 1;
   const end = last * substeps;
+  const shown = film.shown * substeps; // free until here, beyond it against the object
   const half = film.lines[0].length / 2;
   const SECONDS = 5;
 
@@ -98,10 +99,10 @@
     requestAnimationFrame(tick);
   });
   slider.addEventListener("input", () => { stop(); show(Number(slider.value)); });
-  addEventListener("beforeprint", () => { stop(); slider.value = end; show(end); });
+  addEventListener("beforeprint", () => { stop(); slider.value = shown; show(shown); });
 
-  slider.value = end; // some browsers remember where it stood
-  show(end);
+  slider.value = shown; // some browsers remember where it stood
+  show(shown);
   document.getElementById("controls").hidden = false;
   document.getElementById("still").hidden = true;
 })();

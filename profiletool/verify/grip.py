@@ -13,7 +13,6 @@ from fem.contact import ORDERS
 from fem.element import gauss
 from fem.gap import Obstacle
 from fem.grasp import Contacts, Touch
-from fem.mesh import Mesh
 from fem.solution import Solution, State
 from fem.solver import solve
 from profiletool.joints.misfit import misfit_to
@@ -91,7 +90,7 @@ def grip_of(
     design: Design, target: FloatArray, held: Contacts, solid: str, asked: GripRequest
 ) -> Grip:
     """Read a run against the object off, with the payload at its highest pressure."""
-    place = _Place(design, held.mesh, target)
+    place = _Place(design, held.free, target)
     states = tuple(
         place.state(state, touch) for state, touch in zip(held.states, held.touches, strict=True)
     )
@@ -115,7 +114,9 @@ def grip_of(
 class _Place:
     """Readings of contact in the object's frame."""
 
-    def __init__(self, design: Design, mesh: Mesh, target: FloatArray) -> None:
+    def __init__(self, design: Design, free: Solution, target: FloatArray) -> None:
+        mesh = free.mesh
+        self._rest, self._design = free.states[0].volume, design
         sign = side_sign(design.source.side)
         self._mesh, self._target, self._sign = mesh, target, sign
         self._place = Placement(design.base_pose, sign, mesh.actuator.radius)
@@ -150,8 +151,16 @@ class _Place:
             depth_mm=touch.depth,
             energy_error=state.energy_error,
             shape=shape,
+            theta_deg=self._angles(state),
+            air_ml=1e-3 * (state.volume - self._rest),
             pad=pad,
         )
+
+    def _angles(self, state: State) -> tuple[float, ...]:
+        """Angles of the joints, deg: beyond half a turn they go on."""
+        planned = np.array([joint.theta_target_deg for joint in self._design.joints])
+        theta = np.degrees(state.theta)
+        return tuple((theta + 360.0 * np.rint((planned - theta) / 360.0)).tolist())
 
     def _vectors(self, v: FloatArray) -> FloatArray:
         """Vectors (n, 3) of the model in the object's frame, its third axis across the picture."""

@@ -16,6 +16,7 @@ from profiletool.records.frames import Pose, base_axes, outward
 from profiletool.records.grip import Grip, GripRequest, Solid
 from profiletool.records.side import side_sign
 from profiletool.records.units import FloatArray
+from profiletool.report.film import film_of
 from profiletool.report.grip import grip_csv, grip_json, grip_text
 from profiletool.verify.fields import fields_of
 from profiletool.verify.grip import run_grip
@@ -107,6 +108,15 @@ def test_more_pressure_presses_harder_and_moves_little(found: Grip, design: Desi
     sign = side_sign(design.source.side)
     np.testing.assert_allclose(force, [sign * last.radial_N, last.axial_N, 0.0], atol=1e-9)
     assert np.linalg.norm(last.pad.force, axis=1).sum() == pytest.approx(last.normal_N)
+
+
+def test_the_film_goes_on_against_the_object(found: Grip, run: Run, design: Design) -> None:
+    film = film_of(run.verification, design, found)
+    assert film.shown == len(film.lines) - 2
+    np.testing.assert_allclose(film.pressure_bar[film.shown :], [0.8, 0.9])
+    assert film.outline() == film_of(run.verification, design).outline()
+    np.testing.assert_allclose(found.states[0].theta_deg, film.theta_deg[film.shown], atol=1.0)
+    assert 0.0 < film.air_ml[film.shown] < film.air_ml[-1]
 
 
 def test_a_grip_is_told(found: Grip) -> None:
