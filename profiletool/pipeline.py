@@ -15,7 +15,7 @@ from profiletool.joints.optimal_method import optimal_plan
 from profiletool.joints.paper_method import paper_plan
 from profiletool.records.design import Design
 from profiletool.records.edit import Edit
-from profiletool.records.grip import GripRequest
+from profiletool.records.grip_request import GripRequest
 from profiletool.records.making import check_request, request_again
 from profiletool.records.picture import Scale
 from profiletool.records.profile import Profile

@@ -21,7 +21,7 @@ from profiletool.cli.console import (
 from profiletool.cli.fe import Out, bar, check_run, failures
 from profiletool.cli.rows import parameters_of, parameters_of_rows, with_signature
 from profiletool.errors import NotVerified, UnreadableInput
-from profiletool.records.grip import GripRequest
+from profiletool.records.grip_request import GripRequest
 from profiletool.records.making import model_of
 from profiletool.records.options import GRIP, MODEL
 

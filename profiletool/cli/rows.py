@@ -11,7 +11,7 @@ import typer
 
 from profiletool.cli.console import Numbers, build, four, numbers, turn, two
 from profiletool.records.built import BuildErrors
-from profiletool.records.grip import GripRequest
+from profiletool.records.grip_request import GripRequest
 from profiletool.records.option import ANY, Option
 from profiletool.records.request import Request
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from profiletool.records.grip import GripRequest
+from profiletool.records.grip_request import GripRequest
 from profiletool.records.request import Request
 
 ANY = -1  # count of a list that is as long as it may be

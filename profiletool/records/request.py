@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 from profiletool.records.built import BuildErrors
 from profiletool.records.clamp import LEAST_MM, Clamp
-from profiletool.records.grip import Solid
+from profiletool.records.grip_request import Solid
 from profiletool.records.model import ModelInputs
 from profiletool.records.side import Side
 

@@ -11,7 +11,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from profiletool.profile.shape_csv import shape_csv
-from profiletool.records.grip import Grip, GripRequest, GripState, Payload
+from profiletool.records.grip import Grip, GripState, Payload
+from profiletool.records.grip_request import GripRequest
 from profiletool.records.units import FloatArray
 from profiletool.report.figure import WIDE_IN, legend_below, panels, png, titled
 from profiletool.report.palette import BLUE, GREEN, GREY, INK, ORANGE

@@ -18,7 +18,8 @@ from fem.solver import solve
 from profiletool.joints.misfit import misfit_to
 from profiletool.records.design import Design
 from profiletool.records.frames import base_axes
-from profiletool.records.grip import Grip, GripRequest, GripState, Pad
+from profiletool.records.grip import Grip, GripState, Pad
+from profiletool.records.grip_request import GripRequest
 from profiletool.records.side import side_sign
 from profiletool.records.units import BAR_PER_MPA, FloatArray
 from profiletool.verify.lines import Placement, placed_shape

@@ -18,7 +18,8 @@ from profiletool.errors import UsageError
 from profiletool.joints.misfit import misfit_to
 from profiletool.records.built import BuildErrors, Built
 from profiletool.records.design import Design
-from profiletool.records.grip import Grip, GripRequest
+from profiletool.records.grip import Grip
+from profiletool.records.grip_request import GripRequest
 from profiletool.records.side import side_sign
 from profiletool.records.units import BAR_PER_MPA, FloatArray
 from profiletool.verify.built import P95, draws, groups_of, trimmed

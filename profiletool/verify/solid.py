@@ -10,7 +10,7 @@ from fem.outline import Extruded, Outline, Revolved
 from profiletool.errors import UsageError
 from profiletool.records.design import Design
 from profiletool.records.frames import base_axes, direction
-from profiletool.records.grip import Solid
+from profiletool.records.grip_request import Solid
 from profiletool.records.side import side_sign
 from profiletool.records.units import FloatArray
 

@@ -59,6 +59,16 @@ class Writer:
         """What it says on stderr."""
         return self.process.communicate(timeout=60)[1].strip()
 
+    def stop(self, blow: int) -> None:
+        """Send a signal until it ends: Python may swallow an interrupt, as within a finaliser."""
+        while True:
+            self.process.send_signal(blow)
+            try:
+                self.process.communicate(timeout=5)
+            except subprocess.TimeoutExpired:
+                continue
+            return
+
 
 def race(writers: list[Writer]) -> list[str]:
     for writer in writers:

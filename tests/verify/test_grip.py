@@ -13,7 +13,8 @@ from profiletool.files.design_json import load_design
 from profiletool.records.built import BuildErrors, Built, BuiltMisfit
 from profiletool.records.design import Design, Joint
 from profiletool.records.frames import Pose, base_axes, outward
-from profiletool.records.grip import Grip, GripRequest, Solid
+from profiletool.records.grip import Grip
+from profiletool.records.grip_request import GripRequest, Solid
 from profiletool.records.side import side_sign
 from profiletool.records.units import FloatArray
 from profiletool.report.film import film_of
