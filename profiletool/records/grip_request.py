@@ -1,4 +1,4 @@
-"""What is asked of the finger on its object."""
+"""Request: what is asked of the finger on its object."""
 
 from __future__ import annotations
 
