@@ -185,7 +185,8 @@ def _film(dossier: Dossier) -> Film:
     scene, found = dossier.scene, dossier.found
     if found is None:
         return still_of(scene.bent, scene.design)
-    return film_of(found, scene.design, dossier.grip)
+    # A shape that misses the object would jump where the object comes.
+    return film_of(found, scene.design, dossier.grip if scene.design.feasible else None)
 
 
 def _shape(dossier: Dossier, film: Film) -> Markup:
