@@ -266,8 +266,9 @@ def _with_errors(attempt: Draft, say: Callable[[str], None]) -> Draft:
     asked = GripRequest(solid=request.solid, clearance_mm=request.clearance_mm)
     most = request.tube.max_pressure_bar
     held = in_contact(
-        expected.design, checked.run.solution, attempt.profile.points, expected.fields, asked, most
-    )
+        expected.design, checked.run.solution, attempt.profile.points, expected.fields,
+        asked, most, request.grip_N,
+    )  # fmt: skip
     return replace(told, design=held.design, grip=held.grip)
 
 

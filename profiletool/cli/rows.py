@@ -43,10 +43,11 @@ _HOLDERS = {
     "tube": "Tube",
     "model": "Finite elements",
 }
+_OFF = "--no-"
 _FIELDS = {
     **dict.fromkeys(("side", "start_pct", "end_pct", "clearance_mm"), "What to follow"),
     **dict.fromkeys(("formula", "extrapolate"), "Tube"),
-    **dict.fromkeys(("verify", "refine", "grip", "solid"), "Finite elements"),
+    **dict.fromkeys(("verify", "refine", "grip", "grip_N", "solid"), "Finite elements"),
 }
 
 
@@ -90,7 +91,8 @@ def _annotation(row: Option) -> Any:
     if kind.type is BuildErrors:
         return Annotated[BuildErrors, typer.Option(row.flag, parser=build, **words)]
     if kind.type is bool:
-        flags = f"{row.flag}/--no-{row.flag[2:]}" if row.off else row.flag
+        on = " " if row.flag.startswith(_OFF) else row.flag
+        flags = f"{on}/{_OFF}{row.flag.removeprefix(_OFF).lstrip('-')}" if row.off else row.flag
         return Annotated[bool, typer.Option(flags, **words)]
     least = row.least if kind.type is int else None
     value: Any = Literal[kind.choices] if kind.choices else kind.type

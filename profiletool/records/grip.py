@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -148,6 +149,21 @@ class Grip:
     factorisations: int
     seconds: float
     payload: Payload | None = None
+
+    def normal_at(self, bar: float) -> float:
+        """Interpolate the normal force at a pressure within the run, N."""
+        bars, forces = zip(*((s.pressure_bar, s.normal_N) for s in self.states), strict=True)
+        return float(np.interp(bar, bars, forces))
+
+    def bar_at(self, force_N: float) -> float:
+        """Find the lowest pressure with a normal force, bar; infinite where none has it."""
+        if self.states[0].normal_N >= force_N:
+            return self.states[0].pressure_bar
+        for before, after in pairwise(self.states):
+            if before.normal_N < force_N <= after.normal_N:
+                share = (force_N - before.normal_N) / (after.normal_N - before.normal_N)
+                return before.pressure_bar + share * (after.pressure_bar - before.pressure_bar)
+        return np.inf
 
     @property
     def converged(self) -> bool:

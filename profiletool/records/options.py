@@ -186,9 +186,14 @@ DESIGN = (
         off=True,
     ),
     Option(
-        "--grip", "grip", _YES,
-        "Press the verified actuator on its object, and choose the pressure to work at there.",
-        off=True,
+        "--no-grip", "grip", _YES,
+        "Leave out to press the verified actuator on its object, and to choose the pressure to "
+        "work at there.", off=True,
+    ),
+    Option(
+        "--grip", "grip_N", _number(" N"),
+        "Normal force of one finger on its object to choose the pressure to work at by, N "
+        "(default: the pressure of the least expected misfit).", above=0.0, metavar="N",
     ),
     _OBJECT,
     Option(

@@ -180,6 +180,8 @@ class Request:
         Whether finite elements verify the design, and correct it before.
     grip : bool
         Whether finite elements press the verified actuator on its object.
+    grip_N : float or None
+        Normal force on the object to work with; None for the least expected misfit.
     solid : {"auto", "turned", "extruded"}
         What the profile is of: see `profiletool.records.grip.GripRequest`.
     model : ModelInputs
@@ -210,6 +212,7 @@ class Request:
     verify: bool = True
     refine: bool = True
     grip: bool = True
+    grip_N: float | None = None
     solid: Solid = "auto"
     model: ModelInputs = field(default_factory=ModelInputs)
     given: Picture | DrawnLine | Profile | None = None

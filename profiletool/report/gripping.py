@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from profiletool.records.built import mm_text
 from profiletool.records.design import Design
 from profiletool.records.grip import Grip
@@ -63,15 +61,9 @@ def _advice(grip: Grip, design: Design) -> tuple[Markup, ...]:
         "short of the object there; one that is softer is stopped by it. So a pressure above it "
         f"costs little and gains much: {mm_text(expected.in_contact)} mm RMS are to be expected "
         f"there, and 95 % of builds lie within {mm_text(most.in_contact)} mm. One finger as "
-        f"planned presses with {_normal_at(grip, design.operate_bar):.2f} N there."
+        f"planned presses with {grip.normal_at(design.operate_bar):.2f} N there."
     )
     return (tag("p", said),)
-
-
-def _normal_at(grip: Grip, bar: float) -> float:
-    """Interpolate the normal force, N."""
-    bars, forces = zip(*((s.pressure_bar, s.normal_N) for s in grip.states), strict=True)
-    return float(np.interp(bar, bars, forces))
 
 
 def _forces(grip: Grip) -> Markup:

@@ -29,6 +29,7 @@ from profiletool.verify.lines import shape_of
 from profiletool.verify.solid import object_of
 
 SHARES = (0.96, 1.0, 1.04, 1.1, 1.18, 1.28)  # of the free pressure, pressed on the object
+_FURTHER = (1.4, 1.55, 1.75, 2.0, 2.5, 3.0)  # where a force is asked for
 _FREE_FROM = 0.65  # of it, from which on free states count
 _SAMPLES = 20_000
 _STEP_BAR = 0.01
@@ -58,8 +59,9 @@ def in_contact(
     fields: ErrorFields,
     asked: GripRequest,
     most_bar: float,
+    force_N: float | None = None,
 ) -> InContact:
-    """Choose the pressure to work at against the object.
+    """Choose the pressure to work at against the object: the least expected misfit, or a force.
 
     Parameters
     ----------
@@ -75,6 +77,9 @@ def in_contact(
         What the object is like.
     most_bar : float
         Highest pressure that is allowed.
+    force_N : float or None
+        Normal force of the finger to choose the pressure by; the highest pressure where it is
+        not reached.
     """
     if design.built is None:
         return InContact(design, None)
@@ -83,13 +88,19 @@ def in_contact(
     except UsageError:
         return InContact(design, None)
     bars = tuple(share * design.pressure_bar for share in SHARES)
+    if force_N is not None:
+        further = (share * design.pressure_bar for share in _FURTHER)
+        bars = (*bars, *(bar for bar in further if bar < most_bar), max(most_bar, bars[-1]))
     held = pressed(free, obstacle, bars, settle=False)
     grip = grip_of(design, target, held, solid, replace(asked, pressures_bar=bars))
     curve = _curve(design, free, target, grip)
     if curve is None:
         return InContact(design, grip)
-    last = grip.states[-1].pressure_bar
-    return InContact(_with(design, design.built, fields, curve, min(most_bar, last)), grip)
+    most = min(most_bar, grip.states[-1].pressure_bar)
+    at = None
+    if force_N is not None:
+        at = min(most, max(design.pressure_bar, grip.bar_at(force_N)))
+    return InContact(_with(design, design.built, fields, curve, (at, most)), grip)
 
 
 @dataclass(frozen=True)
@@ -123,14 +134,22 @@ def _curve(design: Design, free: Solution, target: FloatArray, grip: Grip) -> _C
 
 
 def _with(
-    design: Design, built: Built, fields: ErrorFields, curve: _Curve, most_bar: float
+    design: Design,
+    built: Built,
+    fields: ErrorFields,
+    curve: _Curve,
+    limits: tuple[float | None, float],
 ) -> Design:
-    """Choose the pressure of the least expected misfit, and say what to expect there."""
+    """Take a given pressure, or that of the least expected misfit, and say what to expect there.
+
+    ``limits`` are the given pressure and the highest one, bar.
+    """
+    given, most_bar = limits
     stiffness, off_bar, rest = _draws(design, fields, built.build)
     planned = design.pressure_bar
     top = floor(most_bar / _STEP_BAR + 1e-6) * _STEP_BAR
     count = max(round((top - planned) / _STEP_BAR), 0)
-    bars = planned + _STEP_BAR * np.arange(count + 1)
+    bars = planned + _STEP_BAR * np.arange(count + 1) if given is None else np.array([given])
 
     def rms(bar: float) -> FloatArray:
         found = curve((bar + off_bar) / (planned * stiffness))

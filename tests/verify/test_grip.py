@@ -147,6 +147,13 @@ def test_the_finger_works_above_its_free_pressure(
     capped = in_contact(told, run.solution, target, fields, GripRequest(), 0.82).design
     assert capped.operate_bar is not None
     assert capped.operate_bar <= 0.82
+    # A force that is asked for sets the pressure; where it is out of reach, the highest one is.
+    assert held.grip is not None
+    asked = held.grip.normal_at(0.97)
+    forced = in_contact(told, run.solution, target, fields, GripRequest(), 1.2, asked).design
+    assert forced.operate_bar == pytest.approx(0.97, rel=0.01)
+    most = in_contact(told, run.solution, target, fields, GripRequest(), 1.1, 1e3).design
+    assert most.operate_bar == pytest.approx(1.1)
 
 
 @pytest.mark.parametrize(
