@@ -14,7 +14,9 @@ from fem.against import solve_against
 from fem.contact import Contact, Surface, pressed_of
 from fem.element import face_nodes, gauss, natural_nodes, shape
 from fem.gap import Gap, Obstacle, Plane, Sphere
+from fem.gauze import Gauze
 from fem.grasp import Contacts
+from fem.meshsize import MeshSize
 from fem.solution import Solution
 from fem.solver import solve
 from tests.fem.tubes import COARSE, mesh_of
@@ -189,6 +191,42 @@ def test_a_blocked_joint_pushes_with_more_than_its_pressure_about_its_uncut_thre
     kept = float(run.states[-1].theta[0] / free.states[-1].theta[0])
     assert kept < 0.5
     assert blocked * (1.0 - kept) < moment < 1.5 * blocked
+
+
+class Plates(Slot):
+    """A slot of two plates that ends before a tube of 140 mm does."""
+
+    def gap(self, x: FloatArray) -> Gap:
+        found = super().gap(x)
+        return replace(found, distance=np.where(self._between(x), found.distance, 1e3))
+
+    def near(self, x: FloatArray) -> NDArray[np.bool_]:
+        return super().near(x) & self._between(x)
+
+    @staticmethod
+    def _between(x: FloatArray) -> NDArray[np.bool_]:
+        return np.asarray((x[:, 2] > 20.0) & (x[:, 2] < 120.0))
+
+
+@pytest.mark.slow
+def test_a_hoop_between_plates() -> None:
+    """Of a hoop of threads, pressed to h: a stadium of width b, flat over b - h; force P (b - h).
+
+    The wall's own bending adds a force that does not depend on the pressure.
+    """
+    gauze = Gauze(stiffness=400.0, slack=0.0)
+    tube = Actuator(140.0, (), diameter=20.0, wall=0.8, gauze=gauze)
+    free = solve(tube, [0.05, 0.1], MeshSize(around=12, beside=0.0, edge=4.0))
+    run = solve_against(free, Plates(9.0), [0.05, 0.1])
+    assert run.failure is None
+    middle = free.mesh.layers // 2
+    force = []
+    for touch in run.touches:
+        push = (touch.pressed.area * touch.pressed.pressure).sum(axis=(1, 2))
+        force.append(push[middle] / free.mesh.heights[middle])  # half a tube, two plates
+    width = 2.0 * np.abs(run.states[-1].x[middle, :, 0]).max()
+    assert (force[1] - force[0]) / 0.05 == pytest.approx(width - 18.0, rel=0.02)
+    assert force[1] == pytest.approx(0.1 * (width - 18.0), rel=0.05)
 
 
 def test_asked_pressures_must_be_pressures(free: Solution) -> None:

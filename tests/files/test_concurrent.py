@@ -168,7 +168,8 @@ def test_killed_at_any_moment(tmp_path: Path, blow: str) -> None:
         writer = Writer(out, turn, 1000, force=True)
         writer.start()
         time.sleep(chance.uniform(0.0, 0.1))
-        writer.stop(getattr(signal, blow))
+        writer.process.send_signal(getattr(signal, blow))
+        writer.end()
         try:
             check_free(out, force=True)  # as the next run begins
         finally:

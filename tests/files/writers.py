@@ -15,11 +15,12 @@ FILES = 12
 
 # Writes folders, or files, that tell whose they are; argv: place, whose, times, force, file.
 WRITER = """
-import sys
+import signal, sys
 from pathlib import Path
 from profiletool.errors import ProfiletoolError
 from profiletool.files.write import write_file, write_folder
 place, whose, times, force, as_file = Path(sys.argv[1]), sys.argv[2], *map(int, sys.argv[3:])
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background ignores it
 print("ready", flush=True)
 sys.stdin.readline()
 for turn in range(times):
@@ -58,16 +59,6 @@ class Writer:
     def end(self) -> str:
         """What it says on stderr."""
         return self.process.communicate(timeout=60)[1].strip()
-
-    def stop(self, blow: int) -> None:
-        """Send a signal until it ends: Python may swallow an interrupt, as within a finaliser."""
-        while True:
-            self.process.send_signal(blow)
-            try:
-                self.process.communicate(timeout=5)
-            except subprocess.TimeoutExpired:
-                continue
-            return
 
 
 def race(writers: list[Writer]) -> list[str]:
