@@ -29,6 +29,9 @@ class Predicted:
         +1 where a turn toward the object is counter-clockwise, y up (see `Profile.sign`).
     heading_deg : float
         Of the clamped end, in the shapes' frame.
+    error_share : float
+        By how much of themselves turns may run otherwise along the tube: what an angle that is
+        read with this model is uncertain by.
     """
 
     pressure_bar: FloatArray
@@ -37,6 +40,7 @@ class Predicted:
     windows_mm: FloatArray
     sign: float
     heading_deg: float
+    error_share: float = 0.003
 
 
 @dataclass(frozen=True)

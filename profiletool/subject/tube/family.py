@@ -57,7 +57,7 @@ class Family:
         Wrapped sector of every place, from 0; -1 in a cut.
     middles : (J + 1,) int
         Places of the sectors' middles.
-    sign : float
+    sign, error_share : float
         As in `Predicted`.
     """
 
@@ -70,6 +70,7 @@ class Family:
     sector: IntArray
     middles: IntArray
     sign: float
+    error_share: float
 
     @property
     def joints(self) -> int:
@@ -142,6 +143,7 @@ def family_of(predicted: Predicted) -> Family:
         np.where(sector % 2 == 0, sector // 2, -1),
         middles,
         predicted.sign,
+        predicted.error_share,
     )
 
 

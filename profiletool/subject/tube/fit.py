@@ -23,7 +23,7 @@ _CLOSE = 5  # from this round on it is close, and what lies far off does not cou
 # of a lengthening; of the model's pressure over itself.
 _TURN_RAD, _TURN_SHARE, _GROW_MM, _BAR_SHARE = np.radians(1.0), 0.12, 1.0, 0.3
 _MARGIN_MM, _SPACING_MM = 0.25, 0.5  # of the places that are looked at
-_LEAST_PX = 0.05  # what edges scatter at best
+_LEAST_PX, _MODEL_PX = 0.05, 0.15  # what edges scatter at best, and a model's own waves
 _TUKEY, _CAUCHY = 4.685, 2.385
 _BELIEVED = 0.3  # of an edge's weight
 _LAGS = 12  # places along a line, over which residuals may hang together
@@ -333,7 +333,7 @@ def _solve(
 def _scatter(residual: FloatArray) -> float:
     if not len(residual):
         return 1.0
-    return max(_LEAST_PX, 1.4826 * float(np.median(np.abs(residual))))
+    return max(_MODEL_PX, 1.4826 * float(np.median(np.abs(residual))))
 
 
 def _covariance(

@@ -9,10 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import numpy as np
 
 from profiletool.errors import NoObject, NoScale, UsageError
+from profiletool.image.load import load_picture
 from profiletool.image.sheet.rectify import Rectified, rectify
 from profiletool.records.bench import Angle, Seen, State
 from profiletool.records.picture import Picture
@@ -127,6 +129,11 @@ def measure_series(
         if progress is not None:
             progress(0.7 + 0.3 * count / len(order))
     return tuple(made[k] for k in range(len(bars)))
+
+
+def picture_of(path: Path) -> Picture:
+    """Decode a picture file, upright; as `profiletool.image.load.load_picture`."""
+    return load_picture(path)
 
 
 def _view(name: str, bar: float, picture: Picture, family: Family, looked: Looked) -> _View:
@@ -295,7 +302,7 @@ def _seen(fit: _Fit, family: Family) -> Seen:
     theta = family.theta_deg(tube.bar, tube.turn)
     count = family.joints
     spread = np.degrees(np.sqrt(np.diag(fitted.covariance)[5 : 5 + count]))
-    sigma = np.hypot(spread, _MODEL_DEG)
+    sigma = np.hypot(spread, np.hypot(_MODEL_DEG, family.error_share * theta))
     states = [_state(fit, k, float(sigma[k])) for k in range(count)]
     angles = tuple(
         Angle(float("nan"), float("nan"), state)
