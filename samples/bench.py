@@ -2,7 +2,8 @@
 
 A tube of silicone in gauze lies on a table, held by a clamp, and is inflated in steps. The picture
 shows what a lens would: perspective, a shadow, blur, noise, JPEG. The skin bulges at the cuts as
-finite elements say. Beside the pictures lies truth.csv, with the angles of the joints.
+finite elements say. Beside the pictures lies truth.csv, with the
+angles of the joints, and truth_tube.json, the tube that was rendered.
 
     python samples/bench.py DESIGN.json --pressures 0,0.6,1.2 --out DIR
         [--rubber 0.9] [--wall 1.03] [--thread 3] [--dead 0.05] [--noise 2] [--sheet] [--tilt 8]
@@ -27,7 +28,9 @@ from scipy.ndimage import gaussian_filter
 from fem import Mesh, State
 from formula.rubber import RubberLaw
 from profiletool import Design, load_design
+from profiletool.files.tube_json import tube_json
 from profiletool.image.sheet.board import board_for, ink
+from profiletool.records.calibrated import CalibratedTube
 from profiletool.records.rubber import law_of
 from profiletool.records.side import side_sign
 from profiletool.verify.lines import on_line
@@ -41,8 +44,17 @@ BEYOND = np.radians(24.0)  # of the half that faces the viewer: what a slanting 
 PITCH_MM, THREAD_MM = 2.0, 0.25
 FINE = 3  # of the picture's pixels, that the tube is drawn in
 SHEET_PX_PER_MM = 10
-SILICONE, THREAD, CLAMP = (np.array(c) for c in ((0.62, 0.64, 0.66), (0.86, 0.86, 0.82), (0.1,) * 3))
-GROUNDS = {"paper": (0.93, 0.92, 0.88), "wood": (0.45, 0.29, 0.16), "dark": (0.13, 0.14, 0.16)}
+SILICONE, THREAD, CLAMP = (
+    np.array(c) for c in ((0.62, 0.64, 0.66), (0.86, 0.86, 0.82), (0.1,) * 3)
+)
+PATCHES = (
+    (-75.0, -42.0, -40.0, -12.0),
+    (-35.0, 0.0, 10.0, 40.0),
+)  # x0, y0, x1, y1 on the ground, mm
+GROUNDS = {
+    "paper": (0.93, 0.92, 0.88), "patches": (0.93, 0.92, 0.88), "wood": (0.45, 0.29, 0.16),
+    "dark": (0.13, 0.14, 0.16),
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -144,7 +156,12 @@ def placed(points: FloatArray, lying: Lying, sign: float) -> FloatArray:
 
 
 def photograph(
-    mesh: Mesh, state: State, sign: float, shot: Shot, lying: Lying, rng: np.random.Generator,
+    mesh: Mesh,
+    state: State,
+    sign: float,
+    shot: Shot,
+    lying: Lying,
+    rng: np.random.Generator,
     object_outline: FloatArray | None = None,
 ) -> NDArray[np.uint8]:
     """Take a picture of a state: (H, W, 3) RGB.
@@ -181,7 +198,9 @@ def _ground(shot: Shot, rng: np.random.Generator) -> FloatArray:
         board = board_for("a4")
         paper_w, paper_h = board.paper_mm
         sheet = np.full((round(paper_h * SHEET_PX_PER_MM), round(paper_w * SHEET_PX_PER_MM)), 0.9)
-        for x0, y0, x1, y1 in np.round((ink(board) + np.tile(board.origin_mm, 2)) * SHEET_PX_PER_MM):
+        for x0, y0, x1, y1 in np.round(
+            (ink(board) + np.tile(board.origin_mm, 2)) * SHEET_PX_PER_MM
+        ):
             sheet[int(y0) : int(y1), int(x0) : int(x1)] = 0.05
         sheet = gaussian_filter(sheet, 1.0).astype(np.float32)
         at = (spots + np.array(board.paper_mm) / 2) * SHEET_PX_PER_MM - 0.5
@@ -192,8 +211,15 @@ def _ground(shot: Shot, rng: np.random.Generator) -> FloatArray:
         base = 0.97 * (0.8 * SILICONE + 0.2 * THREAD)
     else:
         base = np.array(GROUNDS[shot.ground])
+    base = np.broadcast_to(base, (h, w, 3)).copy()
+    if shot.ground == "patches":  # of the tube's own colour, where it lies over them
+        for x0, y0, x1, y1 in PATCHES:
+            x, y = spots[..., 0], spots[..., 1]
+            base[(x > x0) & (x < x1) & (y > y0) & (y < y1)] = 0.8 * SILICONE + 0.2 * THREAD
     light = 1.0 + 0.12 * (spots[..., 0] / 160.0) + 0.08 * (spots[..., 1] / 160.0)
-    grain = gaussian_filter(rng.normal(0.0, 1.0, (h, w)), (1.0, 30.0) if shot.ground == "wood" else 3.0)
+    grain = gaussian_filter(
+        rng.normal(0.0, 1.0, (h, w)), (1.0, 30.0) if shot.ground == "wood" else 3.0
+    )
     grain *= 0.1 / grain.std() if shot.ground == "wood" else 0.015 / grain.std()
     return np.clip(base * (light + grain)[..., None], 0.0, 1.0)
 
@@ -218,7 +244,9 @@ def _tube(
     corners = FINE * (np.stack([px[:-1, :-1], px[1:, :-1], px[1:, 1:], px[:-1, 1:]], 2) + 0.5) - 0.5
     shown = np.round(16 * corners).astype(np.int32)
     mean = 0.25 * (colour[:-1, :-1] + colour[1:, :-1] + colour[1:, 1:] + colour[:-1, 1:])
-    order = np.argsort(-0.25 * (depth[:-1, :-1] + depth[1:, :-1] + depth[1:, 1:] + depth[:-1, 1:]).ravel())
+    order = np.argsort(
+        -0.25 * (depth[:-1, :-1] + depth[1:, :-1] + depth[1:, 1:] + depth[:-1, 1:]).ravel()
+    )
     quads, shades = shown.reshape(-1, 4, 2), mean.reshape(-1, 3).tolist()
     for k in order.tolist():
         cv2.fillConvexPoly(drawn, quads[k], shades[k], shift=4)
@@ -272,6 +300,16 @@ def twin_of(design: Design, rubber: float = 1.0, wall: float = 1.0, thread: floa
     return replace(design, tube=tube, model=replace(design.model, sector_extra_deg=extra))
 
 
+def tube_of(twin: Design, dead_bar: float) -> CalibratedTube:
+    """Write the twin's tube down, as if it were calibrated without any error."""
+    assert twin.tube.rubber is not None
+    return CalibratedTube(
+        twin.source.file, "", None, twin.tube.outer_diameter_mm, twin.tube.wall_mm,
+        twin.tube.rubber, None, dead_bar, twin.model.sector_extra_deg, (), 0, (), 0.0, 0.0, None,
+        (), (),
+    )  # fmt: skip
+
+
 def _main(given: Sequence[str] | None = None) -> None:
     asked = _words().parse_args(given)
     design = load_design(asked.design)
@@ -298,6 +336,7 @@ def _main(given: Sequence[str] | None = None) -> None:
         theta = min(told.items(), key=lambda pair: abs(pair[0] - at))[1].theta_deg
         rows += [f"{name},{bar:g},{k},{angle:.4f}" for k, angle in enumerate(theta, start=1)]
     (asked.out / "truth.csv").write_text("\n".join(rows) + "\n", "utf-8")
+    (asked.out / "truth_tube.json").write_bytes(tube_json(tube_of(twin, asked.dead)))
 
 
 def _words() -> argparse.ArgumentParser:

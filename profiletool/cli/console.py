@@ -38,6 +38,12 @@ Force = Annotated[
 DesignFile = Annotated[
     Path, typer.Argument(metavar="DESIGN.json", help="A design.json, or the folder that holds one.")
 ]
+TubeFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--tube", metavar="TUBE.json", help="The tube as it is: a file that calibrate wrote."
+    ),
+]
 FormulaFile = Annotated[
     Path | None, typer.Option("--formula", help="A formula file, or by name paper (default) or fe.")
 ]

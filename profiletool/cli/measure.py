@@ -105,7 +105,9 @@ def measure(
 ) -> None:
     """Measure the joints' angles of an inflated actuator in pictures, and compare them."""
     with exit_codes(debug):
-        asked = MeasureOptions(**{row.name: options.pop(row.name) for row in fields(MeasureOptions)})
+        asked = MeasureOptions(
+            **{row.name: options.pop(row.name) for row in fields(MeasureOptions)}
+        )
         file = design_file(file)
         folder = asked.out or Path(f"{file.absolute().parent.name}_measured")
         from profiletool.files import write

@@ -15,6 +15,7 @@ from profiletool.cli.console import (
     Force,
     Json,
     Quiet,
+    TubeFile,
     changed_notes,
     design_file,
     exit_codes,
@@ -52,6 +53,7 @@ def verify(
             "--threads", help="Run the single threads of each sector, too, beside the smeared."
         ),
     ] = False,
+    tube: TubeFile = None,
     out: Out = None,
     force: Force = False,
     as_json: Json = False,
@@ -67,6 +69,8 @@ def verify(
     with exit_codes(debug, _KEPT if options.get("samples") else KEPT):
         check_run(pressure, out, force)
         from profiletool.files.design_json import load_design
+        from profiletool.files.tube_json import load_tube
+        from profiletool.records.calibrated import with_tube
         from profiletool.report.fe import fe_json
         from profiletool.report.sampled import samples_text, samples_tree
         from profiletool.subject.recall import target_of
@@ -76,6 +80,8 @@ def verify(
         design = load_design(file)
         for note in changed_notes(design):
             speaker(quiet)(f"note: {note}")
+        if tube is not None:
+            design = with_tube(design, load_tube(tube))
         design = replace(design, model=model_of(options, design.model))
         most = design.pressure_bar if pressure is None else pressure
         check_run(most, None, force)

@@ -25,7 +25,9 @@ def read_times(path: Path) -> tuple[tuple[float, float], ...]:
     UnreadableInput
     """
     rows = _table(path, TIMES)
-    times = [(_number(path, n, row, "time_s"), _number(path, n, row, "pressure_bar")) for n, row in rows]
+    times = [
+        (_number(path, n, row, "time_s"), _number(path, n, row, "pressure_bar")) for n, row in rows
+    ]
     for (n, _), (one, bar), (following, _) in zip(rows[1:], times, times[1:], strict=False):
         if following <= one:
             raise UnreadableInput(f"cannot read {path}: line {n}: times must rise")
@@ -84,5 +86,7 @@ def _table(path: Path, names: tuple[str, ...]) -> list[tuple[int, dict[str, str]
 def _number(path: Path, line: int, row: dict[str, str], name: str) -> float:
     field = row[name]
     if not NUMBER.fullmatch(field) or not math.isfinite(float(field)):
-        raise UnreadableInput(f"cannot read {path}: line {line}: {name} {shown(field)} is no number")
+        raise UnreadableInput(
+            f"cannot read {path}: line {line}: {name} {shown(field)} is no number"
+        )
     return float(field)

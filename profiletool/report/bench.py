@@ -158,7 +158,9 @@ def draw_fit(rgb: Any, seen: Seen) -> bytes:
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5))
     axes.set_axis_off()
-    small = Image.fromarray(rgb).resize((round(share * width), round(share * height)), Image.BOX)
+    small = Image.fromarray(rgb).resize(
+        (round(share * width), round(share * height)), Image.Resampling.BOX
+    )
     axes.imshow(np.asarray(small), extent=(-0.5, width - 0.5, height - 0.5, -0.5), aspect="auto")
     for line in seen.outline_px:
         axes.plot(*line.T, color=BLUE, lw=1.0)
@@ -170,7 +172,7 @@ def draw_fit(rgb: Any, seen: Seen) -> bytes:
         lost = angle.state == "lost"
         said = "lost" if lost else f"{angle.theta_deg:.1f}°"
         axes.text(
-            *at, f"{k + 1}: {said}", color=RED if lost else INK, fontsize=9, ha="center",
+            float(at[0]), float(at[1]), f"{k + 1}: {said}", color=RED if lost else INK, fontsize=9, ha="center",
             va="center", bbox={"boxstyle": "round,pad=0.2", "fc": "white", "ec": "none", "alpha": 0.8},
         )  # fmt: skip
     buffer = io.BytesIO()

@@ -78,9 +78,7 @@ def ways_figure(output: BenchOutput) -> Figure:
     order = sorted(range(len(output.seen)), key=lambda k: output.seen[k].pressure_bar)
     ways = np.array([output.seen[k].phalanges_mm for k in order])
     for k, (colour, marker) in enumerate(styles(ways.shape[1] - 1), start=1):
-        axes.plot(
-            *ways[:, k].T, color=colour, marker=marker, ms=4.5, lw=1.2, label=f"phalanx {k}"
-        )
+        axes.plot(*ways[:, k].T, color=colour, marker=marker, ms=4.5, lw=1.2, label=f"phalanx {k}")
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.1)
     axes.set_xlabel("x (mm), along the clamped tube")

@@ -56,10 +56,16 @@ def bench_html(output: BenchOutput) -> bytes:
 def _facts(output: BenchOutput) -> Iterable[tuple[str, str]]:
     states = [angle.state for one in output.seen for angle in one.angles]
     yield "Pictures", str(len(output.seen))
-    yield "Angles", f"{states.count('measured')} measured, {states.count('by hand')} by hand, {states.count('lost')} lost"
+    yield (
+        "Angles",
+        f"{states.count('measured')} measured, {states.count('by hand')} by hand, {states.count('lost')} lost",
+    )
     for name, (_, whole) in output.compared.items():
         if whole is not None:
-            yield f"Off {NAMES[name]}", f"{whole.rmse_deg:.2f}° RMS, bias {signed(whole.bias_deg, 2)}°"
+            yield (
+                f"Off {NAMES[name]}",
+                f"{whole.rmse_deg:.2f}° RMS, bias {signed(whole.bias_deg, 2)}°",
+            )
 
 
 def _sections(output: BenchOutput) -> Iterable[Markup]:
@@ -69,7 +75,12 @@ def _sections(output: BenchOutput) -> Iterable[Markup]:
         f"Measured angles, those by {NAMES[output.by]} (lines) and by the formula (dashed), "
         "positive toward the object."
     )
-    yield _section("angles", "Angles against pressure", _plot(angles_figure(output), "a", said), _angles(output))
+    yield _section(
+        "angles",
+        "Angles against pressure",
+        _plot(angles_figure(output), "a", said),
+        _angles(output),
+    )
     yield _section(
         "agreement", "Agreement", tag("p", R2_ALONE), _agreement(output),
         _plot(regression_figure(output), "r", "Measured against predicted, and their difference."),
@@ -99,7 +110,9 @@ def _angles(output: BenchOutput) -> Markup:
         (
             f"{one.pressure_bar:.2f}",
             *(
-                "lost" if a.state == "lost" else f"{signed(a.theta_deg)} ± {a.sigma_deg:.2f}"
+                "lost"
+                if a.state == "lost"
+                else f"{signed(a.theta_deg)} ± {a.sigma_deg:.2f}"
                 + (" by hand" if a.state == "by hand" else "")
                 for a in one.angles
             ),

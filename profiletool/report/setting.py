@@ -17,6 +17,10 @@ def setting_text(found: PressureSetting) -> str:
         lines.append(f"its tip lies {found.off_mm:.1f} mm off the way of the planned one")
     if found.rms_deg is not None:
         lines.append(f"its angles lie {found.rms_deg:.1f} deg RMS off those of the planned one")
+    if found.fit_mm is not None:
+        lines.append(f"there it lies {found.fit_mm:.2f} mm RMS off the profile, by finite elements")
+    if found.dead_bar:
+        lines.append(f"of that the gauge reads {found.dead_bar:+.2f} bar too much")
     lines += [f"note: {note}" for note in found.notes]
     return "\n".join(lines) + "\n"
 
@@ -30,6 +34,8 @@ def setting_json(found: PressureSetting) -> str:
         "stiffness": round(found.stiffness, 4),
         "off_mm": None if off is None else round(off, 3),
         "rms_deg": None if rms is None else round(rms, 3),
+        "fit_mm": None if found.fit_mm is None else round(found.fit_mm, 3),
+        "dead_bar": round(found.dead_bar, 4),
         "joints_off": list(found.joints_off),
         "beyond": found.beyond,
         "notes": list(found.notes),

@@ -78,7 +78,9 @@ def predicted_by_response(design: Design, most_bar: float) -> Predicted:
     rows, shapes = [], []
     for bar in bars.tolist():
         pressure = bar / BAR_PER_MPA
-        turn = model.factors(chain, pressure)[:, 0] * model.theta(chain.openF, chain.alpha, pressure)
+        turn = model.factors(chain, pressure)[:, 0] * model.theta(
+            chain.openF, chain.alpha, pressure
+        )
         rows.append(np.degrees(chain.sense * turn))
         shapes.append(model.shape(chain, pressure, design.base_pose, sign))
     return Predicted(

@@ -56,8 +56,7 @@ class Shown:
 
     def inside(self, px: FloatArray, margin: float = 2.0) -> BoolArray:
         """Whether points (..., 2) lie in the picture."""
-        found: BoolArray = ((px >= margin) & (px <= self.size - 1.0 - margin)).all(axis=-1)
-        return found
+        return np.asarray(((px >= margin) & (px <= self.size - 1.0 - margin)).all(axis=-1))
 
 
 def shown(rgb: NDArray[np.uint8]) -> Shown:
@@ -86,7 +85,7 @@ def edges_across(
         Standard deviation of the predicted place.
     """
     count = int(np.ceil(reach / _STEP_PX))
-    places = _STEP_PX * np.arange(-count - 4, count + 5)
+    places = np.asarray(_STEP_PX * np.arange(-count - 4, count + 5), np.float64)
     profile = _profiles(picture, px, normal, places)
     slope = np.gradient(_smooth(profile), _STEP_PX, axis=1)
     rise = np.sqrt((slope**2).sum(axis=2))

@@ -162,7 +162,7 @@ def _fields(shape: Shape, sign: float, base: float) -> FloatArray:
 
 
 def _ramp(along: FloatArray, start: float, end: float) -> FloatArray:
-    return np.clip((along - start) / (end - start), 0.0, 1.0)
+    return np.asarray(np.clip((along - start) / (end - start), 0.0, 1.0))
 
 
 def _share(
@@ -175,4 +175,4 @@ def _share(
         return _ramp(along, *window)
     share = (turn - turn[a]) / whole
     share[:a], share[b:] = 0.0, 1.0
-    return np.clip(share, 0.0, 1.0)
+    return np.asarray(np.clip(share, 0.0, 1.0))

@@ -24,6 +24,7 @@ _CLOSE = 5  # from this round on it is close, and what lies far off does not cou
 _TURN_RAD, _TURN_SHARE, _GROW_MM, _BAR_SHARE = np.radians(1.0), 0.12, 1.0, 0.3
 _MARGIN_MM, _SPACING_MM = 0.25, 0.5  # of the places that are looked at
 _LEAST_PX, _MODEL_PX = 0.05, 0.15  # what edges scatter at best, and a model's own waves
+_MOST_MM = 0.05  # of their scatter, once close: edges that scatter more are of something else
 _TUKEY, _CAUCHY = 4.685, 2.385
 _BELIEVED = 0.3  # of an edge's weight
 _LAGS = 12  # places along a line, over which residuals may hang together
@@ -139,6 +140,7 @@ class _Rows:
     sector: IntArray
     group: IntArray
     seen: BoolArray
+    px_per_mm: float
 
 
 @dataclass(frozen=True)
@@ -195,7 +197,11 @@ def fit_tube(
         rows = _rows(picture, camera, family, tube, reach)
         step, _, _ = _solve(rows, beforehand(tube), _free(family, k < _WHOLE), k < _CLOSE)
         tube = _kept(tube.of(tube.values() + step), family)
-    rows, free, more = _rows(picture, camera, family, tube, reach), _free(family, False), beforehand(tube)
+    rows, free, more = (
+        _rows(picture, camera, family, tube, reach),
+        _free(family, False),
+        beforehand(tube),
+    )
     step, weight, scale = _solve(rows, more, free, False)
     residual = rows.off - rows.slope @ step
     covariance = _covariance(rows, more, free, weight, residual)
@@ -261,8 +267,8 @@ def _rows(picture: Shown, camera: Camera, family: Family, tube: Tube, reach_mm: 
         parts.append((edges.off, slope, at + edges.off[:, None] * out, edges.seen))
     off, slope, px, seen = (np.concatenate(part) for part in zip(*parts, strict=True))
     sector = np.tile(family.sector[places], 2)
-    side = np.repeat([0, 1], len(places))
-    return _Rows(off, slope, px, sector, 2 * sector + side, seen)
+    sides = np.repeat([0, 1], len(places))
+    return _Rows(off, slope, px, sector, 2 * sector + sides, seen, px_per_mm)
 
 
 def _hints(camera: Camera, family: Family, tube: Tube, lines: Mapping[int, Line]) -> Gaps:
@@ -317,6 +323,8 @@ def _solve(
     for _ in range(8):
         residual = rows.off - slope @ step
         scale = _scatter(residual[rows.seen])
+        if not wide:
+            scale = min(scale, max(_MODEL_PX, _MOST_MM * rows.px_per_mm))
         z = residual / scale
         if wide:
             weight = rows.seen / (1.0 + (z / _CAUCHY) ** 2)

@@ -115,7 +115,10 @@ def find_tube(
     fine = _tensor(plane.shrunk(FINE_MM))
     limits = None if allowed is None else _shrunk_mask(allowed, fine.shape[1:])
     spot = None if point is None else np.asarray(point) * plane.mm_per_px
-    best = [_closer(fine, family, one, limits, spot) for one in found[: (_BEST if spot is None and limits is None else 10 * _BEST)]]
+    best = [
+        _closer(fine, family, one, limits, spot)
+        for one in found[: (_BEST if spot is None and limits is None else 10 * _BEST)]
+    ]
     ranked = sorted((one for one in best if one[0] > 0.0), reverse=True)
     return [
         Found(plane.place(x, y, heading, hand), bar, score)
@@ -146,7 +149,8 @@ def _tensor(rgb: NDArray[np.uint8]) -> Float32:
     parts = []
     for channel in range(3):
         gx, gy = (
-            cv2.Sobel(colour[..., channel], cv2.CV_32F, *way, scale=0.125) for way in ((1, 0), (0, 1))
+            cv2.Sobel(colour[..., channel], cv2.CV_32F, *way, scale=0.125)
+            for way in ((1, 0), (0, 1))
         )
         parts.append(np.stack([gx * gx, gx * gy, gy * gy]))
     tensor = np.sum(parts, axis=0)

@@ -257,9 +257,7 @@ def _again(fits: Mapping[int, _Fit], k: int, family: Family) -> _Fit:
     if known is None:
         return own
     view = own.view
-    fitted = fit_tube(
-        view.shown, view.camera, family, own.fitted.tube, own.lines, known, near=True
-    )
+    fitted = fit_tube(view.shown, view.camera, family, own.fitted.tube, own.lines, known, near=True)
     return replace(own, fitted=fitted)
 
 
@@ -281,7 +279,8 @@ def _told(others: Sequence[_Fit], own: _Fit) -> Known | None:
         weighted += weight @ (here + off)
     if not total.any():
         return None
-    return Known(np.linalg.solve(total, weighted), np.linalg.cholesky(total).T)
+    mean: FloatArray = np.linalg.solve(total, weighted).astype(np.float64)
+    return Known(mean, np.linalg.cholesky(total).T.astype(np.float64))
 
 
 def _units(own: _Fit) -> FloatArray:
