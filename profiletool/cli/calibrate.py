@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import datetime
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -19,9 +20,22 @@ from profiletool.cli.console import (
     progress_bar,
     speaker,
 )
+from profiletool.cli.rows import parameters_of, with_signature
 from profiletool.errors import UnreadableInput, UsageError
 
 _MOST_CYCLES = 10_000_000
+
+
+@dataclass(frozen=True)
+class Occasion:
+    """When the angles were measured."""
+
+    cycles: Annotated[
+        int | None, typer.Option(help="How often the tube had been inflated before.")
+    ] = None
+    date: Annotated[
+        str | None, typer.Option(metavar="YYYY-MM-DD", help="Of the measurement (default: today).")
+    ] = None
 
 
 def calibrate(
@@ -30,20 +44,15 @@ def calibrate(
         Path,
         typer.Argument(
             metavar="ANGLES.csv",
-            help="Measured angles, as measure writes them: pressure_bar, joint, theta_deg, sigma_deg.",
+            help="Measured angles, as measure writes them.",
         ),
     ],
     out: Annotated[Path, typer.Option(help="The tube file to write (JSON).")],
-    cycles: Annotated[
-        int | None, typer.Option(help="How often the tube had been inflated before.")
-    ] = None,
-    date: Annotated[
-        str | None, typer.Option(metavar="YYYY-MM-DD", help="Of the measurement (default: today).")
-    ] = None,
     force: Force = False,
     as_json: Json = False,
     quiet: Quiet = False,
     debug: Debug = False,
+    **options: Any,
 ) -> None:
     """Find what a prototype's rubber, gauge, threads and wall are, from its measured angles."""
     with exit_codes(debug):
@@ -55,9 +64,11 @@ def calibrate(
         from profiletool.verify.calibration import calibrate as fit
 
         write.check_file(out, force)
+        asked = Occasion(**options)
+        cycles = asked.cycles
         if cycles is not None and not 0 <= cycles <= _MOST_CYCLES:
             raise UsageError(f"--cycles must be 0 to {_MOST_CYCLES}, not {cycles}")
-        day = _day(date)
+        day = _day(asked.date)
         file = design_file(file)
         design, readings = load_design(file), read_angles(angles)
         try:
@@ -69,6 +80,9 @@ def calibrate(
         write.write_file(out, data, force)
         typer.echo(data.decode() if as_json else tube_text(tube), nl=False)
         speaker(quiet)(f"written: {out}")
+
+
+with_signature(calibrate, parameters_of(calibrate), parameters_of(Occasion))
 
 
 def _day(date: str | None) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from profiletool.records.bench import Predicted
     from profiletool.records.design import Design
     from profiletool.records.picture import Picture
-    from profiletool.subject.tube.series import Looked
+    from profiletool.subject.tube.views import Looked
 
 _MOST_BAR, _MOST_PICTURES = 20.0, 200
 
@@ -58,7 +59,7 @@ class MeasureOptions:
         float | None,
         typer.Option(
             "--mm-per-px",
-            help="Millimetres per pixel, seen squarely (default: the printed sheet in the picture).",
+            help="Millimetres per pixel, seen squarely (default: by the printed sheet).",
         ),
     ] = None
     box: Annotated[
@@ -154,8 +155,8 @@ def _predicted(design: Design, file: Path, most: float, fe: bool, quiet: bool) -
 
 def _looked(asked: MeasureOptions) -> Looked:
     from profiletool.files.bench_csv import read_hand_lines
-    from profiletool.subject.tube.fit import Line
-    from profiletool.subject.tube.series import Looked
+    from profiletool.subject.tube.values import Line
+    from profiletool.subject.tube.views import Looked
 
     scale = asked.mm_per_px
     if scale is not None and not (math.isfinite(scale) and scale > 0.0):
@@ -183,7 +184,7 @@ def _pictures(files: Sequence[Path], pressures: str) -> tuple[list[str], list[fl
     """
     from profiletool.files.bench_csv import read_times
     from profiletool.subject.tube.frames import frames_at, is_video
-    from profiletool.subject.tube.series import picture_of
+    from profiletool.subject.tube.views import picture_of
 
     if any(is_video(file) for file in files):
         if len(files) > 1:
@@ -206,7 +207,7 @@ def _pictures(files: Sequence[Path], pressures: str) -> tuple[list[str], list[fl
         raise UsageError(
             f"{len(files)} pictures and {len(bars)} pressures: give `pressures` one for each"
         )
-    if any(b <= a for a, b in zip(bars, bars[1:], strict=False)):
+    if any(b <= a for a, b in pairwise(bars)):
         raise UsageError("`pressures` must rise from picture to picture: put both in that order")
     if len(files) > _MOST_PICTURES:
         raise UsageError(f"{len(files)} pictures: give {_MOST_PICTURES} at most")

@@ -15,7 +15,7 @@ from profiletool.cli.console import (
     Force,
     Json,
     Quiet,
-    TubeFile,
+    TubeOptions,
     changed_notes,
     design_file,
     exit_codes,
@@ -53,7 +53,6 @@ def verify(
             "--threads", help="Run the single threads of each sector, too, beside the smeared."
         ),
     ] = False,
-    tube: TubeFile = None,
     out: Out = None,
     force: Force = False,
     as_json: Json = False,
@@ -69,19 +68,15 @@ def verify(
     with exit_codes(debug, _KEPT if options.get("samples") else KEPT):
         check_run(pressure, out, force)
         from profiletool.files.design_json import load_design
-        from profiletool.files.tube_json import load_tube
-        from profiletool.records.calibrated import with_tube
         from profiletool.report.fe import fe_json
         from profiletool.report.sampled import samples_text, samples_tree
         from profiletool.subject.recall import target_of
         from profiletool.verify.run import run_design
 
         asked, file = taken(options), design_file(file)
-        design = load_design(file)
+        design = _in_tube(load_design(file), options.pop("tube"))
         for note in changed_notes(design):
             speaker(quiet)(f"note: {note}")
-        if tube is not None:
-            design = with_tube(design, load_tube(tube))
         design = replace(design, model=model_of(options, design.model))
         most = design.pressure_bar if pressure is None else pressure
         check_run(most, None, force)
@@ -103,6 +98,14 @@ def verify(
             _write(out, force, run, design, told, points)
             speaker(quiet)(f"written: {out}")
         end(found)
+
+
+def _in_tube(design: Design, tube: Path | None) -> Design:
+    """Give a design the tube of a file, if one is named."""
+    from profiletool.files.tube_json import load_tube
+    from profiletool.records.calibrated import with_tube
+
+    return design if tube is None else with_tube(design, load_tube(tube))
 
 
 def _write(
@@ -131,7 +134,11 @@ def _compared(
 
 
 with_signature(
-    verify, parameters_of(verify), parameters_of(SampleOptions), parameters_of_rows(MODEL)
+    verify,
+    parameters_of(verify),
+    parameters_of(TubeOptions),
+    parameters_of(SampleOptions),
+    parameters_of_rows(MODEL),
 )
 
 

@@ -172,8 +172,9 @@ def draw_fit(rgb: Any, seen: Seen) -> bytes:
         lost = angle.state == "lost"
         said = "lost" if lost else f"{angle.theta_deg:.1f}°"
         axes.text(
-            float(at[0]), float(at[1]), f"{k + 1}: {said}", color=RED if lost else INK, fontsize=9, ha="center",
-            va="center", bbox={"boxstyle": "round,pad=0.2", "fc": "white", "ec": "none", "alpha": 0.8},
+            float(at[0]), float(at[1]), f"{k + 1}: {said}", color=RED if lost else INK,
+            fontsize=9, ha="center", va="center",
+            bbox={"boxstyle": "round,pad=0.2", "fc": "white", "ec": "none"},
         )  # fmt: skip
     buffer = io.BytesIO()
     figure.savefig(

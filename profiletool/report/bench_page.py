@@ -58,7 +58,7 @@ def _facts(output: BenchOutput) -> Iterable[tuple[str, str]]:
     yield "Pictures", str(len(output.seen))
     yield (
         "Angles",
-        f"{states.count('measured')} measured, {states.count('by hand')} by hand, {states.count('lost')} lost",
+        ", ".join(f"{states.count(word)} {word}" for word in ("measured", "by hand", "lost")),
     )
     for name, (_, whole) in output.compared.items():
         if whole is not None:

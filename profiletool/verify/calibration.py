@@ -1,4 +1,4 @@
-"""What a prototype's rubber, gauge, threads and wall are, from its measured angles.
+"""The calibration of a prototype: rubber, gauge, threads and wall, from its measured angles.
 
 Least squares with priors, by finite elements: a run at the design's own numbers tells where the
 tube is, and a run there settles it.

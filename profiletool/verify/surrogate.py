@@ -114,7 +114,7 @@ def surrogate_at(
     bars = np.array([BAR_PER_MPA * state.pressure for state in states])
     theta = np.unwrap([np.degrees(state.theta) for state in states], period=360.0, axis=0)
     count = len(actuator.windows)
-    chosen = [k for k in range(len(states) - 1, 0, -_EVERY)][::-1]
+    chosen = list(range(len(states) - 1, 0, -_EVERY))[::-1]
     rows = [np.zeros((3, count))]
     for n, k in enumerate(chosen, start=1):
         try:

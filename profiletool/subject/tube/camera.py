@@ -71,12 +71,15 @@ class FlatCamera:
     sigma: float = 0.02
 
     def px(self, points: FloatArray, size: float) -> FloatArray:
+        """Bring points of the plane into the picture."""
         return np.asarray(points * (np.exp(size) / self.mm_per_px))
 
     def mm(self, px: FloatArray) -> FloatArray:
+        """Bring points of the picture into the plane."""
         return np.asarray(px * self.mm_per_px)
 
     def lines(self, outline: Outline, place: Place, size: float) -> FloatArray:
+        """Lay a tube's lines into the picture."""
         axis = place(outline.axis) + place.point
         off = outline.half[:, None] * place(outline.out)
         return self.px(np.stack([axis - off, axis + off]), size)
@@ -103,10 +106,12 @@ class SheetCamera:
         object.__setattr__(self, "camera", self.view.camera_mm)
 
     def px(self, points: FloatArray, size: float) -> FloatArray:
+        """Bring points at the height of the axis into the picture."""
         height = np.full((*points.shape[:-1], 1), self.radius + size)
         return self._seen(np.concatenate([points, height], axis=-1))
 
     def mm(self, px: FloatArray) -> FloatArray:
+        """Bring points of the picture to the height of the axis."""
         spots, foot = self.view.sheet_of(px), self.camera[:2]
         return np.asarray(foot + (spots - foot) * (1.0 - self.radius / self.camera[2]))
 

@@ -117,7 +117,7 @@ def _profiles(picture: Shown, px: FloatArray, normal: FloatArray, places: FloatA
 
 
 def sampled(image: Float32, px: FloatArray) -> FloatArray:
-    """Interpolate an image (H, W, C) at points (..., 2) px; beyond its border, that of it: (..., C).
+    """Interpolate an image (H, W, C) at points (..., 2) px; beyond it counts its border: (..., C).
 
     OpenCV's remap leaves the ends of odd rows as they were in memory (5.0.0).
     """

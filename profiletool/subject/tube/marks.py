@@ -13,7 +13,7 @@ from profiletool.records.units import FloatArray
 from profiletool.subject.tube.camera import Camera
 from profiletool.subject.tube.edges import Shown
 from profiletool.subject.tube.family import Family
-from profiletool.subject.tube.fit import Line, Tube
+from profiletool.subject.tube.values import Line, Tube
 
 _STRONG = 60.0  # levels between a mark's strongest and weakest channel
 _LEAST_MM2, _MOST_MM2 = 0.4, 60.0
@@ -71,6 +71,6 @@ def _spots(picture: Shown, lines: FloatArray, px_per_mm: float) -> list[_Spot]:
 
 
 def _sector(spot: _Spot, lines: FloatArray, family: Family) -> int:
-    """Wrapped sector that a spot lies on; -1 in a cut."""
+    """Find the wrapped sector that a spot lies on; -1 in a cut."""
     middle = lines.mean(axis=0)
     return int(family.sector[int(np.linalg.norm(middle - spot.centre, axis=1).argmin())])

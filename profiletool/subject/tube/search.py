@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from scipy import fft
 
 from profiletool.records.units import BoolArray, Float32, FloatArray
 from profiletool.subject.tube.camera import Place
@@ -19,14 +20,14 @@ from profiletool.subject.tube.edges import sampled
 from profiletool.subject.tube.family import Family
 
 COARSE_MM, FINE_MM = 2.0, 1.0  # a pixel of the pictures that are searched
-_TURNS = 120  # headings that are tried all around
-_BEST = 24  # of the coarse places, that are looked at closely
+_TURNS = 90  # headings that are tried all around
+_BEST, _MANY = 16, 160  # of the coarse places, that are looked at closely: all, and some allowed
 _STEP_MM = 1.0  # of an outline's points
 
 
 @dataclass(frozen=True)
 class Found:
-    """A place, the model's pressure there (bar), and the share of the outline that lies on edges."""
+    """A place, the model's pressure there (bar), and the share of the outline on edges."""
 
     place: Place
     bar: float
@@ -53,7 +54,7 @@ class Plane:
     right: FloatArray
 
     def shrunk(self, mm_per_px: float) -> NDArray[np.uint8]:
-        """The picture at another scale."""
+        """Give the picture at another scale."""
         share = self.mm_per_px / mm_per_px
         h, w = self.rgb.shape[:2]
         size = max(1, round(w * share)), max(1, round(h * share))
@@ -115,10 +116,8 @@ def find_tube(
     fine = _tensor(plane.shrunk(FINE_MM))
     limits = None if allowed is None else _shrunk_mask(allowed, fine.shape[1:])
     spot = None if point is None else np.asarray(point) * plane.mm_per_px
-    best = [
-        _closer(fine, family, one, limits, spot)
-        for one in found[: (_BEST if spot is None and limits is None else 10 * _BEST)]
-    ]
+    wide = _BEST if spot is None and limits is None else _MANY
+    best = [_closer(fine, family, one, limits, spot) for one in found[:wide]]
     ranked = sorted((one for one in best if one[0] > 0.0), reverse=True)
     return [
         Found(plane.place(x, y, heading, hand), bar, score)
@@ -161,7 +160,8 @@ def _tensor(rgb: NDArray[np.uint8]) -> Float32:
 
 
 def _spectrum(tensor: Float32) -> NDArray[np.complex64]:
-    return np.fft.rfft2(tensor, axes=(1, 2)).astype(np.complex64)
+    size = [fft.next_fast_len(side, real=True) for side in tensor.shape[1:]]
+    return np.asarray(fft.rfft2(tensor, s=size, axes=(1, 2)), np.complex64)
 
 
 def _scores(
@@ -173,12 +173,14 @@ def _scores(
     if (room < 1).any():
         return None
     at = np.round(points - low).astype(int)
-    weights = np.zeros((3, *size), np.float32)
+    cell, cells = at[:, 1] * size[1] + at[:, 0], size[0] * size[1]
     nx, ny = normals.T
-    for k, weight in enumerate((nx * nx, 2.0 * nx * ny, ny * ny)):
-        np.add.at(weights[k], (at[:, 1], at[:, 0]), weight)
-    product = (spectrum * np.conj(_spectrum(weights))).sum(axis=0)
-    whole = np.fft.irfft2(product, s=size)
+    weights = np.stack(
+        [np.bincount(cell, w, cells) for w in (nx * nx, 2.0 * nx * ny, ny * ny)]
+    ).astype(np.float32)
+    product = (spectrum * np.conj(_spectrum(weights.reshape(3, *size)))).sum(axis=0)
+    padded = [fft.next_fast_len(side, real=True) for side in size]
+    whole = fft.irfft2(product, s=padded)
     values: FloatArray = whole[: room[1], : room[0]] / len(points)
     return -low, values
 

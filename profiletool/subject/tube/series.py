@@ -8,26 +8,22 @@ of its place counts in each of them.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from pathlib import Path
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from profiletool.errors import NoObject, NoScale, UsageError
-from profiletool.image.load import load_picture
-from profiletool.image.sheet.rectify import Rectified, rectify
+from profiletool.errors import NoObject, UsageError
 from profiletool.records.bench import Angle, Seen, State
 from profiletool.records.picture import Picture
-from profiletool.records.request import Box, Point
-from profiletool.records.units import BoolArray, FloatArray
-from profiletool.subject.tube.camera import Camera, FlatCamera, SheetCamera
-from profiletool.subject.tube.edges import Shown, shown
+from profiletool.records.units import FloatArray
 from profiletool.subject.tube.family import Family
-from profiletool.subject.tube.fit import Fitted, Known, Line, fit_tube, start_of
+from profiletool.subject.tube.fit import fit_tube
 from profiletool.subject.tube.marks import mark_lines
-from profiletool.subject.tube.search import Found, Plane, find_tube
+from profiletool.subject.tube.search import Found, find_tube
+from profiletool.subject.tube.values import Fitted, Known, Line, start_of
+from profiletool.subject.tube.views import Looked, View, allowed_in, view_of
 
-_TRIED = (0.7, 0.8, 0.88, 0.95, 1.03, 1.12, 1.22, 1.35)  # of the nominal pressure
+_TRIED = (0.75, 0.88, 1.0, 1.12, 1.28)  # of the nominal pressure
 _LEAST_SHARE = 0.35  # of a sector's places, that an edge must be believed at
 _MOST_SIGMA_DEG = 1.0  # of an angle that is called measured
 _MODEL_DEG = 0.08  # what the model's own course of turning is uncertain by
@@ -38,42 +34,8 @@ _SEEN_SHARE, _SEEN_SCORE, _CUT_SHARE = 0.4, 0.35, 0.02
 
 
 @dataclass(frozen=True)
-class Looked:
-    """How to look at the pictures.
-
-    Attributes
-    ----------
-    mm_per_px : float or None
-        None where the printed sheet tells.
-    box, point
-        As in `Look`; of the first picture that is looked at.
-    marks : bool
-        Whether dots or rings are painted on the wrapped sectors.
-    lines : mapping of (str, int) to Line
-        Drawn by hand: by picture and wrapped sector, from 0.
-    """
-
-    mm_per_px: float | None = None
-    box: Box | None = None
-    point: Point | None = None
-    marks: bool = False
-    lines: Mapping[tuple[str, int], Line] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class _View:
-    """A picture, prepared."""
-
-    name: str
-    bar: float
-    shown: Shown
-    camera: Camera
-    plane: Plane
-
-
-@dataclass(frozen=True)
 class _Fit:
-    view: _View
+    view: View
     fitted: Fitted
     lines: Mapping[int, Line]
 
@@ -118,7 +80,7 @@ def measure_series(
     fits: dict[int, _Fit] = {}
     last: _Fit | None = None
     for count, k in enumerate(order, start=1):
-        view = _view(names[k], bars[k], load(k), family, looked)
+        view = view_of(names[k], bars[k], load(k), family, looked)
         last = _fitted(view, family, looked, last)
         fits[k] = last
         if progress is not None:
@@ -131,41 +93,7 @@ def measure_series(
     return tuple(made[k] for k in range(len(bars)))
 
 
-def picture_of(path: Path) -> Picture:
-    """Decode a picture file, upright; as `profiletool.image.load.load_picture`."""
-    return load_picture(path)
-
-
-def _view(name: str, bar: float, picture: Picture, family: Family, looked: Looked) -> _View:
-    sheet = rectify(picture)
-    if sheet is not None:
-        if looked.mm_per_px is not None:
-            raise UsageError(
-                f"{name} shows a printed sheet, which tells its scale: leave `mm_per_px` away"
-            )
-        camera: Camera = SheetCamera(sheet.view, family.radius)
-        return _View(name, bar, shown(picture.rgb), camera, _frontal(sheet, camera))
-    if looked.mm_per_px is None:
-        raise NoScale(
-            f"{name}: nothing says how large a pixel is: photograph the actuator on the printed "
-            "sheet (`profiletool sheet`), or give `mm_per_px`"
-        )
-    flat = FlatCamera(looked.mm_per_px)
-    plane = Plane(picture.rgb, looked.mm_per_px, np.zeros(2), np.array([1.0, 0.0]))
-    return _View(name, bar, shown(picture.rgb), flat, plane)
-
-
-def _frontal(sheet: Rectified, camera: Camera) -> Plane:
-    """The frontal view of a sheet, as the tube's plane."""
-    w, h = sheet.frame.width, sheet.frame.height
-    corners = sheet.photo_of(np.array([[0.0, 0.0], [w - 1.0, 0.0], [0.0, h - 1.0]]))
-    first, right, _ = camera.mm(corners)
-    across = right - first
-    length = float(np.linalg.norm(across))
-    return Plane(sheet.plain.rgb, length / (w - 1.0), first, across / length)
-
-
-def _fitted(view: _View, family: Family, looked: Looked, last: _Fit | None) -> _Fit:
+def _fitted(view: View, family: Family, looked: Looked, last: _Fit | None) -> _Fit:
     """Fit a picture, from the one beside it where it can, else from a search of its own."""
     if last is not None and last.view.bar > 0.0:
         known = last.fitted.tube
@@ -187,9 +115,9 @@ def _fitted(view: _View, family: Family, looked: Looked, last: _Fit | None) -> _
     return best
 
 
-def _searched(view: _View, family: Family, looked: Looked) -> list[Found]:
+def _searched(view: View, family: Family, looked: Looked) -> list[Found]:
     tried = sorted({min(share * view.bar, family.top) for share in _TRIED})
-    allowed, point = _allowed(view, looked), None
+    allowed, point = allowed_in(view, looked), None
     if looked.point is not None:
         at = view.camera.mm(np.array(looked.point, float))
         point = view.plane.seen(at) / view.plane.mm_per_px
@@ -199,23 +127,7 @@ def _searched(view: _View, family: Family, looked: Looked) -> list[Found]:
     return found
 
 
-def _allowed(view: _View, looked: Looked) -> BoolArray | None:
-    """Where in the plane's picture the tube may lie."""
-    if looked.box is None:
-        return None
-    x, y, w, h = looked.box
-    corners = np.array([[x, y], [x + w, y], [x + w, y + h], [x, y + h]], float)
-    at = view.plane.seen(view.camera.mm(corners)) / view.plane.mm_per_px
-    low, high = at.min(axis=0), at.max(axis=0)
-    rows, columns = view.plane.rgb.shape[:2]
-    inside_x = (np.arange(columns) >= low[0]) & (np.arange(columns) <= high[0])
-    inside_y = (np.arange(rows) >= low[1]) & (np.arange(rows) <= high[1])
-    if not (inside_x.any() and inside_y.any()):
-        raise UsageError(f"`box` lies outside {view.name}")
-    return np.asarray(inside_y[:, None] & inside_x[None])
-
-
-def _missing(view: _View, best: _Fit | None) -> str:
+def _missing(view: View, best: _Fit | None) -> str:
     if best is not None and best.fitted.outside > _CUT_SHARE:
         return (
             f"{view.name}: the actuator runs out of the frame; show it whole, from the clamp to "
@@ -235,7 +147,7 @@ def _whole(fitted: Fitted) -> bool:
     return _worth(fitted) > _SEEN_SHARE and fitted.outside <= _CUT_SHARE
 
 
-def _lined(view: _View, family: Family, looked: Looked, fitted: Fitted) -> _Fit:
+def _lined(view: View, family: Family, looked: Looked, fitted: Fitted) -> _Fit:
     """Fit again with lines drawn by hand, and through marks."""
     lines: dict[int, Line] = {}
     if looked.marks:
@@ -284,7 +196,7 @@ def _told(others: Sequence[_Fit], own: _Fit) -> Known | None:
 
 
 def _units(own: _Fit) -> FloatArray:
-    """The last of a place's values is a share for one camera, and mm for the other."""
+    """Give the units of a place: its last value is a share for one camera, mm for the other."""
     return np.array([1.0, 1.0, 1.0, own.view.camera.sigma / 0.02])
 
 
