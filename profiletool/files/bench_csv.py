@@ -24,16 +24,15 @@ def read_times(path: Path) -> tuple[tuple[float, float], ...]:
     ------
     UnreadableInput
     """
-    rows = _table(path, TIMES)
-    times = [
-        (_number(path, n, row, "time_s"), _number(path, n, row, "pressure_bar")) for n, row in rows
-    ]
-    for (n, _), (one, bar), (following, _) in zip(rows[1:], times, times[1:], strict=False):
-        if following <= one:
+    found: list[tuple[float, float]] = []
+    for n, row in _table(path, TIMES):
+        time, bar = (_number(path, n, row, name) for name in TIMES)
+        if found and time <= found[-1][0]:
             raise UnreadableInput(f"cannot read {path}: line {n}: times must rise")
         if bar < 0.0:
-            raise UnreadableInput(f"cannot read {path}: a pressure of {bar:g} bar")
-    return tuple(times)
+            raise UnreadableInput(f"cannot read {path}: line {n}: a pressure of {bar:g} bar")
+        found.append((time, bar))
+    return tuple(found)
 
 
 def read_hand_lines(path: Path) -> dict[tuple[str, int], FloatArray]:

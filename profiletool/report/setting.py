@@ -34,10 +34,10 @@ def setting_json(found: PressureSetting) -> str:
         "stiffness": round(found.stiffness, 4),
         "off_mm": None if off is None else round(off, 3),
         "rms_deg": None if rms is None else round(rms, 3),
-        "fit_mm": None if found.fit_mm is None else round(found.fit_mm, 3),
-        "dead_bar": round(found.dead_bar, 4),
         "joints_off": list(found.joints_off),
         "beyond": found.beyond,
         "notes": list(found.notes),
     }
+    if found.fit_mm is not None:
+        tree |= {"fit_mm": round(found.fit_mm, 3), "dead_bar": round(found.dead_bar, 4)}
     return json.dumps(tree, allow_nan=False) + "\n"

@@ -17,6 +17,7 @@ from profiletool.subject.tube.values import Known, Line, Tube
 # of a lengthening; of the model's pressure over itself.
 _TURN_RAD, _TURN_SHARE, _GROW_MM, _BAR_SHARE = np.radians(1.0), 0.12, 1.0, 0.3
 _MARGIN_MM, _SPACING_MM = 0.25, 0.5  # of the places that are looked at
+_WIDE_MM, _SPARSE_MM = 1.5, 1.5  # a reach, from which on they stand that far apart
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,8 @@ def edge_rows(picture: Shown, camera: Camera, family: Family, tube: Tube, reach_
     across = base[1] - base[0]
     sense = np.sign((normal * across).sum(axis=2)) * np.array([[-1.0], [1.0]])
     normal = normal * sense[..., None]
-    every = max(1, round(_SPACING_MM / float(family.along[1] - family.along[0])))
+    spacing = _SPACING_MM if reach_mm < _WIDE_MM else _SPARSE_MM
+    every = max(1, round(spacing / float(family.along[1] - family.along[0])))
     places = np.flatnonzero(family.wrapped(_MARGIN_MM))
     places = places[places % every == 0]
     px_per_mm = float(np.median(np.linalg.norm(across, axis=1))) / (2.0 * family.radius)

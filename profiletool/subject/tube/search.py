@@ -21,7 +21,7 @@ from profiletool.subject.tube.family import Family
 
 COARSE_MM, FINE_MM = 2.0, 1.0  # a pixel of the pictures that are searched
 _TURNS = 90  # headings that are tried all around
-_BEST, _MANY = 16, 160  # of the coarse places, that are looked at closely: all, and some allowed
+_BEST, _MANY = 10, 120  # of the coarse places, that are looked at closely: all, and some allowed
 _STEP_MM = 1.0  # of an outline's points
 
 
