@@ -22,6 +22,7 @@ from profiletool.cli.console import (
 )
 from profiletool.cli.rows import parameters_of, with_signature
 from profiletool.errors import UnreadableInput, UsageError
+from profiletool.records.options import in_flags
 
 _MOST_CYCLES = 10_000_000
 
@@ -78,7 +79,7 @@ def calibrate(
             raise UnreadableInput(f"{angles}: {error}") from error
         data = tube_json(tube)
         write.write_file(out, data, force)
-        typer.echo(data.decode() if as_json else tube_text(tube), nl=False)
+        typer.echo(data.decode() if as_json else in_flags(tube_text(tube)), nl=False)
         speaker(quiet)(f"written: {out}")
 
 

@@ -25,7 +25,7 @@ def tube_text(tube: CalibratedTube) -> str:
     if tube.rmse_deg > 1.5 * tube.expected_deg:
         lines.append(
             "note: the fit leaves more than the readings' own error: a joint is off by itself, or "
-            "the design is another one; trim with --angles names the joint"
+            "the design is another one; `angles` given to trim name the joint"
         )
     return "\n".join(lines) + "\n"
 

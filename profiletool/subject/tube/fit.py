@@ -24,6 +24,7 @@ _CLOSE = 5  # from this round on it is close, and what lies far off does not cou
 _LEAST_PX, _MODEL_PX = 0.05, 0.15  # what edges scatter at best, and a model's own waves
 _MOST_MM = 0.05  # of their scatter, once close: edges that scatter more are of something else
 _TUKEY, _CAUCHY = 4.685, 2.385
+_START = np.array([3.0, 3.0, np.radians(3.0), np.inf])  # sigmas of a start: mm, mm, rad, any size
 _BELIEVED = 0.3  # of an edge's weight
 _LAGS = 12  # places along a line, over which residuals may hang together
 
@@ -53,6 +54,8 @@ def fit_tube(
         Whether it starts from a fit of this very picture.
     """
     tube, given = start, lines or {}
+    if known is None:  # the lines of a straight tube do not say where along them it lies
+        known = Known(start.values()[:4], np.diag(1.0 / _START))
 
     def beforehand(at: Tube) -> Gaps:
         return prior_gaps(family, at, camera, known).plus(line_gaps(camera, family, at, given))
