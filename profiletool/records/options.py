@@ -277,7 +277,8 @@ _OTHERS = {
     "alpha_center_deg": "--alpha-center", "base": "--from", "runs": "--runs",
     "scheduler": "--scheduler", "workers": "--workers", "alpha_deg": "--alpha",
     "openF_mm": "--openF", "theta_deg": "--theta", "tip_mm": "--tip", "at_bar": "--at",
-    "angles": "--angles", "pressures": "--pressures", "tube": "--tube", "joint": "--joint",
+    "angles": "--angles", "pressures": "--pressures",
+    "lines": "--lines", "tube": "--tube", "joint": "--joint",
     "move_mm": "--move",
 }  # fmt: skip
 FLAGS: Mapping[str, str] = {**{row.field: row.flag for row in DESIGN}, **_OTHERS}

@@ -26,6 +26,7 @@ from profiletool.verify.predicted import formula_angles
 
 _OVERLAY_PX = 1400  # of an overlay's longer side, at most
 _DPI = 100
+_MOST_LOST = 0.3  # of all angles, before a note
 
 
 @dataclass(frozen=True)
@@ -85,9 +86,17 @@ def bench_output(
     """Gather what the files of a measurement are written from; see `BenchOutput`."""
     bars = np.array([one.pressure_bar for one in seen])
     known = CubicSpline(predicted.pressure_bar, predicted.theta_deg)(bars)
+    lost = [angle.state for one in seen for angle in one.angles].count("lost")
+    notes = []
+    if lost > _MOST_LOST * len(seen) * len(design.joints):
+        notes.append(
+            f"{lost} of {len(seen) * len(design.joints)} angles are lost: look at the overlays; is "
+            "it this design, at these pressures and this scale?"
+        )
     return BenchOutput(
-        design, seen, predicted, by, known, formula_angles(design, formula, bars), load
-    )
+        design, seen, predicted, by, known, formula_angles(design, formula, bars), load,
+        tuple(notes),
+    )  # fmt: skip
 
 
 def compare_json(output: BenchOutput) -> str:

@@ -116,12 +116,17 @@ def line_gaps(camera: Camera, family: Family, tube: Tube, lines: Mapping[int, Li
     return Gaps(np.array(off), np.array(slope))
 
 
+def turn_sigma(family: Family, bar: float) -> FloatArray:
+    """Give the usual deviations of the joints' turns from the model's, (J,) rad."""
+    theta = np.radians(np.abs(family.theta_deg(bar, np.zeros(family.joints))))
+    return np.asarray(_TURN_RAD + _TURN_SHARE * theta)
+
+
 def prior_gaps(family: Family, tube: Tube, camera: Camera, known: Known | None) -> Gaps:
     """Say what is thought of the values before any edge is seen."""
-    theta = np.radians(np.abs(family.theta_deg(tube.bar, np.zeros(family.joints))))
     sigma = np.concatenate(
         [[1e3, 1e3, 10.0, camera.sigma, _BAR_SHARE * max(tube.bar, 0.1)],
-         _TURN_RAD + _TURN_SHARE * theta, np.full(family.joints, _GROW_MM)]
+         turn_sigma(family, tube.bar), np.full(family.joints, _GROW_MM)]
     )  # fmt: skip
     off = -tube.values() / sigma
     off[[0, 1, 2, 4]] = 0.0

@@ -19,6 +19,7 @@ from profiletool.records.units import FloatArray
 from profiletool.subject.tube.family import Family
 from profiletool.subject.tube.fit import fit_tube
 from profiletool.subject.tube.marks import mark_lines
+from profiletool.subject.tube.rows import turn_sigma
 from profiletool.subject.tube.search import Found, find_tube
 from profiletool.subject.tube.values import Fitted, Known, Line, start_of
 from profiletool.subject.tube.views import Looked, View, allowed_in, view_of
@@ -30,7 +31,9 @@ _MODEL_DEG = 0.08  # what the model's own course of turning is uncertain by
 _SAME = np.array([0.15, 0.15, np.radians(0.15), 0.004])  # of places that agree, beside their sigmas
 _FLOOR = np.array([0.05, 0.05, np.radians(0.04), 0.001])
 _AGREE = 16.0  # chi-squared of four
-_SEEN_SHARE, _SEEN_SCORE, _CUT_SHARE = 0.4, 0.35, 0.02
+_SEEN_SHARE, _LEAST_SEEN, _SEEN_SCORE, _CUT_SHARE = 0.5, 0.3, 0.35, 0.02
+_MOST_SIGMAS = 4.0  # that a scale may be off what was said of it
+_MOST_OTHERWISE = 1.5  # usual deviations from the model, that half of the joints may have
 
 
 @dataclass(frozen=True)
@@ -90,6 +93,11 @@ def measure_series(
         made[k] = _seen(_again(fits, k, family), family)
         if progress is not None:
             progress(0.7 + 0.3 * count / len(order))
+    if all(angle.state == "lost" for one in made.values() for angle in one.angles):
+        raise NoObject(
+            f"no angle can be told in {names[0] if len(names) == 1 else 'any of the pictures'}: "
+            "check design, scale and pressures, or give `lines`"
+        )
     return tuple(made[k] for k in range(len(bars)))
 
 
@@ -100,7 +108,7 @@ def _fitted(view: View, family: Family, looked: Looked, last: _Fit | None) -> _F
         bar = view.bar * known.bar / last.view.bar
         start = replace(start_of(family, known.place, min(bar, family.top)), size=known.size)
         found = _lined(view, family, looked, fit_tube(view.shown, view.camera, family, start))
-        if _whole(found.fitted):
+        if _whole(found, family):
             return found
     best: _Fit | None = None
     for one in _searched(view, family, looked)[:3]:
@@ -108,9 +116,9 @@ def _fitted(view: View, family: Family, looked: Looked, last: _Fit | None) -> _F
         found = _lined(view, family, looked, fit_tube(view.shown, view.camera, family, start))
         if best is None or _worth(found.fitted) > _worth(best.fitted):
             best = found
-        if _whole(found.fitted) and found.fitted.share.mean() > 0.9:
+        if _whole(found, family) and found.fitted.share.mean() > 0.9:
             break
-    if best is None or not _whole(best.fitted):
+    if best is None or not _whole(best, family):
         raise NoObject(_missing(view, best))
     return best
 
@@ -128,7 +136,7 @@ def _searched(view: View, family: Family, looked: Looked) -> list[Found]:
 
 
 def _missing(view: View, best: _Fit | None) -> str:
-    if best is not None and best.fitted.outside > _CUT_SHARE:
+    if best is not None and best.fitted.outside > _CUT_SHARE and _worth(best.fitted) > _LEAST_SEEN:
         return (
             f"{view.name}: the actuator runs out of the frame; show it whole, from the clamp to "
             "the tip"
@@ -143,8 +151,13 @@ def _worth(fitted: Fitted) -> float:
     return float(fitted.share.mean())
 
 
-def _whole(fitted: Fitted) -> bool:
-    return _worth(fitted) > _SEEN_SHARE and fitted.outside <= _CUT_SHARE
+def _whole(fit: _Fit, family: Family) -> bool:
+    """Whether a fit is of the tube that was looked for: seen, of its size, bent much as it."""
+    fitted, tube = fit.fitted, fit.fitted.tube
+    sized = abs(tube.size) <= _MOST_SIGMAS * fit.view.camera.sigma
+    usual = turn_sigma(family, tube.bar)
+    bent = float(np.median(np.abs(tube.turn) / usual)) <= _MOST_OTHERWISE
+    return bent and sized and _worth(fitted) > _SEEN_SHARE and fitted.outside <= _CUT_SHARE
 
 
 def _lined(view: View, family: Family, looked: Looked, fitted: Fitted) -> _Fit:
