@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from profiletool.files.angles_csv import write_angles
 from profiletool.files.design_json import to_json
 from profiletool.pipeline import Result
 from profiletool.profile.shape_csv import shape_csv
@@ -16,6 +17,8 @@ from profiletool.records.design import Design
 from profiletool.records.options import in_flags
 from profiletool.records.seal import proven, sealed
 from profiletool.records.units import FloatArray
+from profiletool.report.bench import BenchOutput
+from profiletool.report.bench_page import BENCH_FILES
 from profiletool.report.deck import DECK_FILES, DeckOutput
 from profiletool.report.dossier import dossier_of, formula_marks
 from profiletool.report.error import error_figure
@@ -236,6 +239,11 @@ def deck_files(output: DeckOutput) -> dict[str, bytes]:
 def grip_files(output: GripOutput) -> dict[str, bytes]:
     """Make the files of a finger on its object: name to content."""
     return written(GRIP_FILES, output)
+
+
+def bench_files(output: BenchOutput) -> dict[str, bytes]:
+    """Write a measurement: name to content."""
+    return {"angles.csv": write_angles(output.seen), **written(BENCH_FILES, output)}
 
 
 def _in_flags(result: Result) -> Result:

@@ -15,6 +15,7 @@ from profiletool.cli.console import (
     Force,
     Json,
     Quiet,
+    TubeOptions,
     changed_notes,
     design_file,
     exit_codes,
@@ -73,7 +74,7 @@ def verify(
         from profiletool.verify.run import run_design
 
         asked, file = taken(options), design_file(file)
-        design = load_design(file)
+        design = _in_tube(load_design(file), options.pop("tube"))
         for note in changed_notes(design):
             speaker(quiet)(f"note: {note}")
         design = replace(design, model=model_of(options, design.model))
@@ -97,6 +98,14 @@ def verify(
             _write(out, force, run, design, told, points)
             speaker(quiet)(f"written: {out}")
         end(found)
+
+
+def _in_tube(design: Design, tube: Path | None) -> Design:
+    """Give a design the tube of a file, if one is named."""
+    from profiletool.files.tube_json import load_tube
+    from profiletool.records.calibrated import with_tube
+
+    return design if tube is None else with_tube(design, load_tube(tube))
 
 
 def _write(
@@ -125,7 +134,11 @@ def _compared(
 
 
 with_signature(
-    verify, parameters_of(verify), parameters_of(SampleOptions), parameters_of_rows(MODEL)
+    verify,
+    parameters_of(verify),
+    parameters_of(TubeOptions),
+    parameters_of(SampleOptions),
+    parameters_of_rows(MODEL),
 )
 
 

@@ -248,7 +248,9 @@ _OTHERS = {
     "alpha_center_deg": "--alpha-center", "base": "--from", "runs": "--runs",
     "scheduler": "--scheduler", "workers": "--workers", "alpha_deg": "--alpha",
     "openF_mm": "--openF", "theta_deg": "--theta", "tip_mm": "--tip", "at_bar": "--at",
-    "angles": "--angles", "joint": "--joint", "move_mm": "--move",
+    "angles": "--angles", "pressures": "--pressures",
+    "lines": "--lines", "tube": "--tube", "joint": "--joint",
+    "move_mm": "--move",
 }  # fmt: skip
 FLAGS: Mapping[str, str] = {**{row.field: row.flag for row in (*DESIGN, *GRIP)}, **_OTHERS}
 
