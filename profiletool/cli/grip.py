@@ -13,12 +13,13 @@ from profiletool.cli.console import (
     Force,
     Json,
     Quiet,
+    TubeOptions,
     changed_notes,
     design_file,
     exit_codes,
     speaker,
 )
-from profiletool.cli.fe import Out, bar, check_run, failures
+from profiletool.cli.fe import Out, bar, check_run, failures, in_tube
 from profiletool.cli.rows import parameters_of, parameters_of_rows, with_signature
 from profiletool.errors import NotVerified, UnreadableInput
 from profiletool.records.grip_request import GripRequest
@@ -52,7 +53,7 @@ def grip(
         own = {row.field: options.pop(row.field) for row in GRIP}
         asked = GripRequest(**{name: value for name, value in own.items() if value is not None})
         file = design_file(file)
-        design = load_design(file)
+        design = in_tube(load_design(file), options.pop("tube"))
         for note in changed_notes(design):
             speaker(quiet)(f"note: {note}")
         design = replace(design, model=model_of(options, design.model))
@@ -78,5 +79,9 @@ def grip(
 
 
 with_signature(
-    grip, parameters_of(grip), parameters_of_rows(GRIP, GripRequest()), parameters_of_rows(MODEL)
+    grip,
+    parameters_of(grip),
+    parameters_of(TubeOptions),
+    parameters_of_rows(GRIP, GripRequest()),
+    parameters_of_rows(MODEL),
 )

@@ -21,7 +21,7 @@ from profiletool.cli.console import (
     exit_codes,
     speaker,
 )
-from profiletool.cli.fe import Out, bar, check_run, end, failures, model_json
+from profiletool.cli.fe import Out, bar, check_run, end, failures, in_tube, model_json
 from profiletool.cli.rows import parameters_of, parameters_of_rows, with_signature
 from profiletool.cli.samples import SampleOptions, sampled, taken
 from profiletool.errors import Infeasible, NotVerified, UnreadableInput
@@ -74,7 +74,7 @@ def verify(
         from profiletool.verify.run import run_design
 
         asked, file = taken(options), design_file(file)
-        design = _in_tube(load_design(file), options.pop("tube"))
+        design = in_tube(load_design(file), options.pop("tube"))
         for note in changed_notes(design):
             speaker(quiet)(f"note: {note}")
         design = replace(design, model=model_of(options, design.model))
@@ -98,14 +98,6 @@ def verify(
             _write(out, force, run, design, told, points)
             speaker(quiet)(f"written: {out}")
         end(found)
-
-
-def _in_tube(design: Design, tube: Path | None) -> Design:
-    """Give a design the tube of a file, if one is named."""
-    from profiletool.files.tube_json import load_tube
-    from profiletool.records.calibrated import with_tube
-
-    return design if tube is None else with_tube(design, load_tube(tube))
 
 
 def _write(

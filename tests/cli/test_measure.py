@@ -101,6 +101,7 @@ def test_tube_files_are_read_before_anything_is_run(samples: Path, tmp_path: Pat
     tube = ("--tube", tmp_path / "tube.json")
     for command in (
         ("verify", samples / DESIGN, *tube),
+        ("grip", samples / DESIGN, *tube),
         ("trim", samples / DESIGN, *tube),
         ("design", samples / "bulb.png", "--out", tmp_path / "out", *tube),
         ("derive", "--out", tmp_path / "formula.json", *tube),
