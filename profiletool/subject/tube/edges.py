@@ -13,7 +13,7 @@ _STEP_PX = 0.5  # of the samples across a line
 _BLUR_PX = 1.0  # of the derivative: what is finer is grain
 _ALONG_PX = (-2.5, -1.25, 0.0, 1.25, 2.5)  # over which a sample is averaged along the line
 _CLEAR = 4.0  # noises of the picture, that an edge must rise above
-_FAINT = 0.2  # of the usual rise along a line: what is less is texture
+_FAINT = 0.4  # of the usual rise along a line: what is less is texture
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ _MOST_MM = 0.05  # of their scatter, once close: edges that scatter more are of 
 _TUKEY, _CAUCHY = 4.685, 2.385
 _START = np.array([3.0, 3.0, np.radians(3.0), np.inf])  # sigmas of a start: mm, mm, rad, any size
 _BELIEVED = 0.3  # of an edge's weight
-_LAGS = 12  # places along a line, over which residuals may hang together
+_LAGS = 3  # places along a line, over which residuals may hang together
 
 
 def fit_tube(

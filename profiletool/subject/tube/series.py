@@ -27,7 +27,7 @@ from profiletool.subject.tube.views import Looked, View, allowed_in, view_of
 _TRIED = (0.75, 0.88, 1.0, 1.12, 1.28)  # of the nominal pressure
 _LEAST_SHARE = 0.35  # of a sector's places, that an edge must be believed at
 _MOST_SIGMA_DEG = 1.0  # of an angle that is called measured
-_MODEL_DEG = 0.08  # what the model's own course of turning is uncertain by
+_MODEL_DEG = 0.06  # what the model's own course of turning is uncertain by
 _SAME = np.array([0.15, 0.15, np.radians(0.15), 0.004])  # of places that agree, beside their sigmas
 _FLOOR = np.array([0.05, 0.05, np.radians(0.04), 0.001])
 _AGREE = 16.0  # chi-squared of four
