@@ -20,7 +20,7 @@ from fem.mesh import Mesh
 from fem.part import Part
 from fem.pattern import Unknowns
 from fem.pivot import DoubtfulPivot, Pivot
-from fem.plug import Plug
+from fem.plug import Plug, inner_area
 
 
 @dataclass(frozen=True)
@@ -167,8 +167,7 @@ class System:
     ) -> tuple[Forces, Inverse | None]:
         """Give forces and factored tangent at x under a pressure, MPa; None where least_J <= 0.
 
-        ``double`` asks for double precision: a step in single precision is off along the soft
-        bending of a long tube.
+        ``double``: a step in single precision is off along the soft bending of a long tube.
         """
         self.version += 1
         self._use(SINGLE if self._single and not double else DOUBLE)
@@ -199,6 +198,18 @@ class System:
         gradient[-self.unknowns.plug :] += cap_gradient
         energy, volume = ours.energy + theirs.energy, ours.volume + theirs.volume + cap
         return Forces(internal, gradient, energy, volume, least)
+
+    def clamp(self, x: FloatArray, pressure: float) -> FloatArray:
+        """Force of the clamp on the tube (or on half of it) at x under a pressure: (3,) N.
+
+        The volume that the wall encloses with the origin lacks the clamped opening's disc, and
+        its gradient two thirds of the push that the wall's last ring takes there.
+        """
+        self._both(lambda part: part.evaluate(x, 0.0, None), alone=True)
+        held: FloatArray = sum(
+            part.sums.internal[0] - pressure * part.sums.gradient[0] for part in self._parts
+        )[: self.mesh.ring].sum(axis=0)
+        return held - [0.0, 0.0, pressure * inner_area(self.mesh) / 1.5]
 
     def compliance(
         self, x: FloatArray, layers: IntArray, around: IntArray, units: FloatArray

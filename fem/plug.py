@@ -24,7 +24,7 @@ class Plug:
         self._radius = mesh.actuator.radius
         self._keep = np.array([1, 2, 3]) if mesh.half else np.arange(6)
         self._free = np.flatnonzero(~mesh.fixed_ring.ravel())
-        self._cap = Cap(_inner_area(mesh))
+        self._cap = Cap(inner_area(mesh))
 
     def pose(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Centre (3,) and rotation (3, 3) of the plug at nodal positions x."""
@@ -94,7 +94,7 @@ class Plug:
         return reduced, np.concatenate([coupling[:mid], T.T @ coupling[mid:]])
 
 
-def _inner_area(mesh: Mesh) -> float:
+def inner_area(mesh: Mesh) -> float:
     """Area inside a ring, as the faces enclose it: they see 2/3 of a cylinder from its axis."""
     wall = face_volumes(np.ascontiguousarray(mesh.X.reshape(-1, 3)[mesh.inner].T), False)
     return 1.5 * float(wall[0].sum()) / float(mesh.z[1])

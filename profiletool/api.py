@@ -166,8 +166,8 @@ def verify_design(
     if failure := runs_into_itself(done.run.verification.last):
         return withdrawn(done, failure)
     build = BuildErrors() if design.built is None else design.built.build
-    verified, _ = with_errors(done.design, done.run, spaced(points), build)
-    return replace(done, design=sealed(verified))
+    expected = with_errors(done.design, done.run, spaced(points), build)
+    return replace(done, design=sealed(expected.design))
 
 
 def derive_formula(

@@ -1,4 +1,4 @@
-"""Files of results, by registries: `DESIGN_FILES`, `FE_FILES`, `TEMPLATE_FILES`, `DECK_FILES`.
+"""Files of results, by registries such as `DESIGN_FILES`, `FE_FILES`, `TEMPLATE_FILES`.
 
 A row gives a file's name and the function that writes it: one function and one row add a file.
 """
@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from profiletool.files.angles_csv import write_angles
 from profiletool.files.design_json import to_json
 from profiletool.pipeline import Result
 from profiletool.profile.shape_csv import shape_csv
@@ -16,11 +17,14 @@ from profiletool.records.design import Design
 from profiletool.records.options import in_flags
 from profiletool.records.seal import proven, sealed
 from profiletool.records.units import FloatArray
+from profiletool.report.bench import BenchOutput
+from profiletool.report.bench_page import BENCH_FILES
 from profiletool.report.deck import DECK_FILES, DeckOutput
 from profiletool.report.dossier import dossier_of, formula_marks
 from profiletool.report.error import error_figure
 from profiletool.report.fe_files import FE_FILES, MESH_FILES, THETA_FILES, FeOutput
 from profiletool.report.figure import mask_png, png
+from profiletool.report.grip import GRIP_FILES, GripOutput
 from profiletool.report.html import report_html
 from profiletool.report.overlay import draw_overlay
 from profiletool.report.plots import Mark
@@ -230,6 +234,16 @@ def deck_files(output: DeckOutput) -> dict[str, bytes]:
     ending = output.format.ending
     rows = {name.format(ending=ending): write for name, write in DECK_FILES.items()}
     return {**written(rows, output), "design.json": to_json(output.design).encode()}
+
+
+def grip_files(output: GripOutput) -> dict[str, bytes]:
+    """Make the files of a finger on its object: name to content."""
+    return written(GRIP_FILES, output)
+
+
+def bench_files(output: BenchOutput) -> dict[str, bytes]:
+    """Write a measurement: name to content."""
+    return {"angles.csv": write_angles(output.seen), **written(BENCH_FILES, output)}
 
 
 def _in_flags(result: Result) -> Result:

@@ -15,6 +15,7 @@ from profiletool.joints.optimal_method import optimal_plan
 from profiletool.joints.paper_method import paper_plan
 from profiletool.records.design import Design
 from profiletool.records.edit import Edit
+from profiletool.records.grip_request import GripRequest
 from profiletool.records.making import check_request, request_again
 from profiletool.records.picture import Scale
 from profiletool.records.profile import Profile
@@ -34,6 +35,7 @@ from profiletool.verdict.ways import refused, ways_out
 from profiletool.verify.check import Check, check
 from profiletool.verify.errors import with_errors
 from profiletool.verify.forward import FeForwardModel
+from profiletool.verify.operate import in_contact
 from profiletool.verify.run import Progress
 
 _CHOSEN, _CORRECTED = 0.35, 0.85  # shares of the time that are gone once joints are so far
@@ -58,6 +60,8 @@ class Result(Draft):
         The finite-element run; None where none was asked for.
     band : (2, M, 2) array or None
         Edges of the band about the object-facing line that holds 95 % of builds, mm.
+    grip : Grip or None
+        The finger on its object.
     reasons : tuple of str
         Why the design is infeasible; none where it is feasible.
     misses : tuple of Missed
@@ -131,7 +135,7 @@ def run(request: Request, say: Callable[[str], None], progress: Progress | None 
         say(f"once more below {lower.tube.max_pressure_bar:.2f} bar, where FE is stable")
         second = _attempt(lower, subject, formula, say, progress)
         attempt = second if second.design.verified else attempt
-    result = _judged(with_neighbours(_with_errors(replace(attempt, request=request))))
+    result = _judged(with_neighbours(_with_errors(replace(attempt, request=request), say)))
     if not result.reasons:
         return result
     fit = result.design.fit
@@ -189,7 +193,8 @@ def run_again(
     attempt = attempt_of(request, subject, formula, plan)
     attempt = replace(attempt, design=replace(attempt.design, source=source, method=design.method))
     checked = _verified(attempt.design, profile, say, progress)
-    return _judged(_with_errors(holding(replace(attempt, design=checked.design, check=checked))))
+    made = holding(replace(attempt, design=checked.design, check=checked))
+    return _judged(_with_errors(made, say))
 
 
 def _bend(say: Callable[[str], None]) -> Callable[[Request, Subject], Draft]:
@@ -247,14 +252,24 @@ def _verified(
     return check(design, profile.points, share)
 
 
-def _with_errors(attempt: Draft) -> Draft:
-    """Add what errors of the build do to a verified design, and how to set its pressure."""
-    checked, design = attempt.check, attempt.design
+def _with_errors(attempt: Draft, say: Callable[[str], None]) -> Draft:
+    """Add what errors of the build do to a verified design, free and against its object."""
+    checked, design, request = attempt.check, attempt.design, attempt.request
     if checked is None or checked.run is None or checked.shape is None:
         return attempt
-    points, build = target_points(attempt.profile), attempt.request.build
-    design, band = with_errors(design, checked.run, points, build)
-    return replace(attempt, design=design, band=band)
+    points, build = target_points(attempt.profile), request.build
+    expected = with_errors(design, checked.run, points, build)
+    told = replace(attempt, design=expected.design, band=expected.band)
+    if not request.grip or expected.fields is None:
+        return told
+    say("finite elements: the actuator against its object")
+    asked = GripRequest(solid=request.solid, clearance_mm=request.clearance_mm)
+    most = request.tube.max_pressure_bar
+    held = in_contact(
+        expected.design, checked.run.solution, attempt.profile.points, expected.fields,
+        asked, most, request.grip_N,
+    )  # fmt: skip
+    return replace(told, design=held.design, grip=held.grip)
 
 
 def _judged(attempt: Draft) -> Result:

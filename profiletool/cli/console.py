@@ -7,6 +7,7 @@ import sys
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -38,6 +39,21 @@ Force = Annotated[
 DesignFile = Annotated[
     Path, typer.Argument(metavar="DESIGN.json", help="A design.json, or the folder that holds one.")
 ]
+TubeFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--tube", metavar="TUBE.json", help="The tube as it is: a file that calibrate wrote."
+    ),
+]
+
+
+@dataclass(frozen=True)
+class TubeOptions:
+    """The tube as it is, in place of the design's."""
+
+    tube: TubeFile = None
+
+
 FormulaFile = Annotated[
     Path | None, typer.Option("--formula", help="A formula file, or by name paper (default) or fe.")
 ]

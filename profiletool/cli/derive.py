@@ -14,6 +14,7 @@ from profiletool.cli.console import (
     Force,
     Numbers,
     Quiet,
+    TubeFile,
     ascending,
     cores,
     exit_codes,
@@ -25,6 +26,7 @@ from profiletool.errors import UsageError
 
 if TYPE_CHECKING:
     from profiletool.campaign.derive import CampaignPlan, Derivation
+    from profiletool.rubber.presets import Rubber
 
 
 _KEPT = "stopped: every finished run is kept; the same command goes on from there"
@@ -45,6 +47,7 @@ class Campaign:
             "(stretch,stress)."
         ),
     ] = "paper"
+    tube: TubeFile = None
     alpha: Annotated[
         Numbers,
         typer.Option(parser=ascending, metavar="DEG,...", help="Extents of the uncut sector, deg."),
@@ -133,10 +136,13 @@ def _plan(asked: Campaign, out: Path) -> CampaignPlan:
         raise UsageError(
             f"--max-pressure must be above 0 and at most 100 bar, not {asked.max_pressure:g}"
         )
+    diameter, wall, rubber = asked.diameter, asked.wall, parse_rubber(asked.rubber)
+    if asked.tube is not None:
+        diameter, wall, rubber = _calibrated(asked, asked.tube)
     plan = CampaignPlan(
-        diameter_mm=asked.diameter,
-        wall_mm=asked.wall,
-        rubber=parse_rubber(asked.rubber),
+        diameter_mm=diameter,
+        wall_mm=wall,
+        rubber=rubber,
         alpha_deg=tuple(asked.alpha),
         openF_mm=tuple(asked.openF),
         pressures_bar=tuple(round(p, 9) for p in pressures_to(asked.max_pressure)),
@@ -144,6 +150,26 @@ def _plan(asked: Campaign, out: Path) -> CampaignPlan:
     )
     check_plan(plan)
     return plan
+
+
+def _calibrated(asked: Campaign, file: Path) -> tuple[float, float, Rubber]:
+    """Give diameter, wall and rubber of a tube file.
+
+    Raises
+    ------
+    UnreadableInput
+    UsageError
+        Others are given as well.
+    """
+    from profiletool.files.tube_json import load_tube
+    from profiletool.rubber.presets import rubber_of
+
+    usual = Campaign()
+    given = (asked.diameter, asked.wall, asked.rubber)
+    if given != (usual.diameter, usual.wall, usual.rubber):
+        raise UsageError("--tube tells diameter, wall and rubber: leave those away")
+    tube = load_tube(file)
+    return tube.outer_diameter_mm, tube.wall_mm, rubber_of(tube.rubber, f"calibrated, {file.name}")
 
 
 def _derived(asked: Campaign, plan: CampaignPlan, say: Callable[[str], None]) -> Derivation:

@@ -3,22 +3,32 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from profiletool.cli.console import OUTPUT, Debug, Force, Quiet, exit_codes, progress_bar, speaker
+from profiletool.cli.console import (
+    OUTPUT,
+    Debug,
+    Force,
+    Quiet,
+    TubeFile,
+    exit_codes,
+    progress_bar,
+    speaker,
+)
 from profiletool.cli.rows import parameters_of, parameters_of_rows, with_signature
 from profiletool.cli.template import Date, Kerf, Paper
-from profiletool.errors import Infeasible, NoObject, NotVerified, Unsure
+from profiletool.errors import Infeasible, NoObject, NotVerified, Unsure, UsageError
 from profiletool.records.making import check_request, request_of
 from profiletool.records.options import DESIGN
 
 if TYPE_CHECKING:
     from profiletool.pipeline import Result
+    from profiletool.records.request import Request
 
 
 @dataclass(frozen=True)
@@ -28,6 +38,7 @@ class Delivery:
     kerf: Kerf = 0.0
     date: Date = ""
     paper: Paper = "a4"
+    tube: TubeFile = None
     out: Annotated[
         Path | None,
         typer.Option(
@@ -64,7 +75,7 @@ def design(
         folder = delivery.out or Path(f"{picture.stem}_design")
         write.check_free(folder, delivery.force)
         known = read_formula(options["formula"], options["extrapolate"])
-        request = request_of(picture, options, known)
+        request = _in_tube(request_of(picture, options, known), delivery.tube, options)
         check_request(request)
         wish = Wish(kerf_mm=delivery.kerf, date=delivery.date)
         check_kerf(wish.kerf_mm, request.tube.pitch_mm, request.tube.thread_mm)
@@ -85,6 +96,24 @@ def design(
         text = files["design.json"].decode() if as_json else joint_table(result.design)
         typer.echo(text, nl=False)
         conclude(result, folder, say)
+
+
+def _in_tube(request: Request, file: Path | None, options: Mapping[str, Any]) -> Request:
+    """Ask for the same in a calibrated tube.
+
+    Raises
+    ------
+    UnreadableInput, UsageError
+    """
+    if file is None:
+        return request
+    from profiletool.files.tube_json import load_tube
+    from profiletool.records.calibrated import request_with
+
+    for field in ("outer_diameter_mm", "wall_mm", "nu", "sector_extra_deg"):
+        if options.get(field) is not None:
+            raise UsageError(f"{file} tells `{field}`: leave one of them away")
+    return request_with(request, load_tube(file))
 
 
 with_signature(design, parameters_of(design), parameters_of_rows(DESIGN), parameters_of(Delivery))

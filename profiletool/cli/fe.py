@@ -30,6 +30,7 @@ from profiletool.records.options import MODEL
 if TYPE_CHECKING:
     from formula.theta import Formula
     from profiletool.records.built import BuiltMisfit
+    from profiletool.records.design import Design
     from profiletool.records.fe import Verification
     from profiletool.records.request import TubeSpec
 
@@ -53,6 +54,14 @@ FormulaBeside = Annotated[
         help="A formula file, or by name paper or fe: its tube and rubber, and its angles beside.",
     ),
 ]
+
+
+def in_tube(design: Design, tube: Path | None) -> Design:
+    """Give a design the tube of a file, if one is named."""
+    from profiletool.files.tube_json import load_tube
+    from profiletool.records.calibrated import with_tube
+
+    return design if tube is None else with_tube(design, load_tube(tube))
 
 
 def joint(

@@ -8,7 +8,20 @@ from typing import Annotated, Any, cast
 
 import typer
 
-from profiletool.cli import again, deck, derive, design, fe, table, template, trim, verify
+from profiletool.cli import (
+    again,
+    calibrate,
+    deck,
+    derive,
+    design,
+    fe,
+    grip,
+    measure,
+    table,
+    template,
+    trim,
+    verify,
+)
 from profiletool.cli.config import configured
 from profiletool.cli.console import KEPT
 from profiletool.cli.rows import parameters_of, with_signature
@@ -100,6 +113,12 @@ for _command, _example in (
     (table.table, "profiletool table --openF 6,8,10 --csv"),
     (table.assign, "profiletool assign --openF 8,8,8,8,6,10 --theta 30,30,30,25,20,45"),
     (trim.trim, "profiletool trim bulb_design/design.json --tip -22.4,-96.6 --at 1.67"),
+    (grip.grip, "profiletool grip bulb_design/design.json --friction 0.5 --fingers 3"),
+    (
+        measure.measure,
+        "profiletool measure bulb_design p0.jpg p1.jpg --pressures 0,0.6 --mm-per-px 0.12",
+    ),
+    (calibrate.calibrate, "profiletool calibrate bulb_design angles.csv --out tube.json"),
     (deck.deck, "profiletool deck bulb_design/design.json --for calculix --out bulb_calculix"),
     (again.edit, "profiletool edit bulb_design --joint 3 --alpha 132 --move 1 --out other"),
     (again.report, "profiletool report bulb_design/design.json --out whole"),

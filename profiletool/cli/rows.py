@@ -9,12 +9,14 @@ from typing import Annotated, Any, Literal, get_type_hints
 
 import typer
 
-from profiletool.cli.console import Numbers, build, four, turn, two
+from profiletool.cli.console import Numbers, build, four, numbers, turn, two
 from profiletool.records.built import BuildErrors
-from profiletool.records.options import Option
+from profiletool.records.grip_request import GripRequest
+from profiletool.records.option import ANY, Option
 from profiletool.records.request import Request
 
 _WORD = inspect.Parameter.KEYWORD_ONLY
+_USUAL = Request(Path())
 
 
 def with_signature(command: Callable[..., None], *parts: Iterable[inspect.Parameter]) -> None:
@@ -41,10 +43,11 @@ _HOLDERS = {
     "tube": "Tube",
     "model": "Finite elements",
 }
+_OFF = "--no-"
 _FIELDS = {
     **dict.fromkeys(("side", "start_pct", "end_pct", "clearance_mm"), "What to follow"),
     **dict.fromkeys(("formula", "extrapolate"), "Tube"),
-    **dict.fromkeys(("verify", "refine"), "Finite elements"),
+    **dict.fromkeys(("verify", "refine", "grip", "grip_N", "solid"), "Finite elements"),
 }
 
 
@@ -54,9 +57,10 @@ def panel_of(row: Option) -> str:
     return _HOLDERS.get(holder) or _FIELDS.get(field, "Method")
 
 
-def parameters_of_rows(rows: Iterable[Option]) -> list[inspect.Parameter]:
-    """Parameters for rows of options; each is named by its row's field."""
-    usual = Request(Path())
+def parameters_of_rows(
+    rows: Iterable[Option], usual: Request | GripRequest = _USUAL
+) -> list[inspect.Parameter]:
+    """Parameters for rows of options; each is named by its row's field, ``usual`` has defaults."""
     return [
         inspect.Parameter(
             row.field, _WORD, default=_default(row, usual), annotation=_annotation(row)
@@ -65,7 +69,7 @@ def parameters_of_rows(rows: Iterable[Option]) -> list[inspect.Parameter]:
     ]
 
 
-def _default(row: Option, usual: Request) -> Any:
+def _default(row: Option, usual: Request | GripRequest) -> Any:
     """Default that the help shows; None where the formula or the method decides."""
     value = row.value(usual)
     if "default:" in row.help:
@@ -82,12 +86,13 @@ def _annotation(row: Option) -> Any:
         "help": row.help, "metavar": row.metavar, "rich_help_panel": panel_of(row),
     }  # fmt: skip
     if kind.count:
-        parse = {1: turn, 2: two, 4: four}[kind.count]
+        parse = {ANY: numbers, 1: turn, 2: two, 4: four}[kind.count]
         return Annotated[Numbers | None, typer.Option(row.flag, parser=parse, **words)]
     if kind.type is BuildErrors:
         return Annotated[BuildErrors, typer.Option(row.flag, parser=build, **words)]
     if kind.type is bool:
-        flags = f"{row.flag}/--no-{row.flag[2:]}" if row.off else row.flag
+        on = " " if row.flag.startswith(_OFF) else row.flag
+        flags = f"{on}/{_OFF}{row.flag.removeprefix(_OFF).lstrip('-')}" if row.off else row.flag
         return Annotated[bool, typer.Option(flags, **words)]
     least = row.least if kind.type is int else None
     value: Any = Literal[kind.choices] if kind.choices else kind.type

@@ -3,12 +3,25 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from profiletool.cli.console import Debug, DesignFile, Json, Numbers, design_file, exit_codes, two
+from profiletool.cli.console import (
+    Debug,
+    DesignFile,
+    Json,
+    Numbers,
+    TubeFile,
+    design_file,
+    exit_codes,
+    two,
+)
 from profiletool.errors import Infeasible, UnreadableInput, UsageError
+
+if TYPE_CHECKING:
+    from profiletool.records.design import Design
+    from profiletool.records.setting import PressureSetting
 
 
 def trim(
@@ -31,13 +44,16 @@ def trim(
             help="Measured angles: columns pressure_bar, joint, theta_deg, and sigma_deg if known.",
         ),
     ] = None,
+    tube: TubeFile = None,
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Find the pressure at which a finished actuator fits, from its tip or its angles."""
+    """Find the pressure at which a finished actuator fits: from its tip, angles, or tube file."""
     with exit_codes(debug):
-        if (tip is None) == (angles is None):
-            raise UsageError("give one of --tip and --angles, to say where the actuator stands")
+        if [tip, angles, tube].count(None) != 2:
+            raise UsageError(
+                "give one of --tip, --angles and --tube, to say where the actuator stands"
+            )
         if (tip is None) != (at is None):
             raise UsageError("--tip and --at go together: where the tip stands, and at what bar")
         from profiletool.files.angles_csv import read_angles
@@ -49,10 +65,20 @@ def trim(
         design = load_design(file)
         readings = () if angles is None else read_angles(angles)
         try:
-            if tip is None or at is None:
+            if tube is not None:
+                found = _by_tube(design, file, tube)
+            elif tip is None or at is None:
                 found = by_angles(design, readings)
             else:
                 found = by_tip(design, (tip[0], tip[1]), at)
         except (UnreadableInput, Infeasible) as error:
             raise type(error)(f"{file}: {error}") from error
         typer.echo(setting_json(found) if as_json else setting_text(found), nl=False)
+
+
+def _by_tube(design: Design, file: Path, tube: Path) -> PressureSetting:
+    from profiletool.files.tube_json import load_tube
+    from profiletool.subject.recall import profile_of
+    from profiletool.verify.tube_setting import by_tube
+
+    return by_tube(design, load_tube(tube), profile_of(design, file).points)

@@ -15,12 +15,13 @@ from profiletool.cli.console import (
     Force,
     Json,
     Quiet,
+    TubeOptions,
     changed_notes,
     design_file,
     exit_codes,
     speaker,
 )
-from profiletool.cli.fe import Out, bar, check_run, end, failures, model_json
+from profiletool.cli.fe import Out, bar, check_run, end, failures, in_tube, model_json
 from profiletool.cli.rows import parameters_of, parameters_of_rows, with_signature
 from profiletool.cli.samples import SampleOptions, sampled, taken
 from profiletool.errors import Infeasible, NotVerified, UnreadableInput
@@ -73,7 +74,7 @@ def verify(
         from profiletool.verify.run import run_design
 
         asked, file = taken(options), design_file(file)
-        design = load_design(file)
+        design = in_tube(load_design(file), options.pop("tube"))
         for note in changed_notes(design):
             speaker(quiet)(f"note: {note}")
         design = replace(design, model=model_of(options, design.model))
@@ -125,7 +126,11 @@ def _compared(
 
 
 with_signature(
-    verify, parameters_of(verify), parameters_of(SampleOptions), parameters_of_rows(MODEL)
+    verify,
+    parameters_of(verify),
+    parameters_of(TubeOptions),
+    parameters_of(SampleOptions),
+    parameters_of_rows(MODEL),
 )
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 from profiletool.errors import UnreadableInput
 from profiletool.files.columns import NUMBER, read_lines, shown
 from profiletool.files.read import read_file
+from profiletool.records.bench import Seen
 from profiletool.records.setting import AngleReading
 
 COLUMNS = ("picture", "pressure_bar", "joint", "theta_deg", "sigma_deg", "state")
@@ -37,6 +39,19 @@ def read_angles(path: Path | str) -> tuple[AngleReading, ...]:
     except UnreadableInput as error:
         raise UnreadableInput(f"cannot read {path}: {error}") from None
     return readings
+
+
+def write_angles(seen: Sequence[Seen]) -> bytes:
+    """Write the angles that pictures show; a joint that is lost has none."""
+    lines = [",".join(COLUMNS)]
+    for one in seen:
+        for joint, angle in enumerate(one.angles, start=1):
+            lost = angle.state == _LOST
+            value = "," if lost else f"{angle.theta_deg:.4f},{angle.sigma_deg:.4f}"
+            picture = one.picture.replace('"', "'")
+            name = f'"{picture}"' if "," in picture else picture
+            lines.append(f"{name},{one.pressure_bar:g},{joint},{value},{angle.state}")
+    return ("\n".join(lines) + "\n").encode()
 
 
 def _readings(data: bytes) -> tuple[AngleReading, ...]:

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 from profiletool.errors import UsageError
 from profiletool.records.built import BuildErrors, build_errors
 from profiletool.records.model import ModelInputs, check_model
-from profiletool.records.options import DESIGN, MODEL, Option
+from profiletool.records.option import Option
+from profiletool.records.options import DESIGN, MODEL
 from profiletool.records.request import (
     PRESSURE_STEP_BAR,
     Look,

@@ -7,36 +7,12 @@ notebook; `in_flags` turns it into the command's words: "raise --max-length".
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path, PurePath
-from typing import Any
 
 from profiletool.records.built import BuildErrors
 from profiletool.records.clamp import LEAST_MM
-from profiletool.records.request import Request
-
-
-@dataclass(frozen=True)
-class ValueKind:
-    """What an option holds.
-
-    Attributes
-    ----------
-    type : type
-        float, int, bool, str, Path, or tuple for numbers with commas between.
-    show : callable
-        A value as the report says it.
-    count : int
-        How many numbers with commas between it takes; 0 where it takes no list.
-    choices : tuple of str
-        What a str may be; empty where it may be anything.
-    """
-
-    type: type
-    show: Callable[[Any], str]
-    count: int = 0
-    choices: tuple[str, ...] = ()
+from profiletool.records.option import ANY, Option, ValueKind
 
 
 def _number(unit: str) -> ValueKind:
@@ -45,6 +21,10 @@ def _number(unit: str) -> ValueKind:
 
 def _pixels(count: int) -> ValueKind:
     return ValueKind(tuple, lambda values: ",".join(f"{v:g}" for v in values) + " px", count)
+
+
+def _list(unit: str) -> ValueKind:
+    return ValueKind(tuple, lambda values: ",".join(f"{v:g}" for v in values) + unit, ANY)
 
 
 def _choice(*choices: str) -> ValueKind:
@@ -59,57 +39,11 @@ _TURN = ValueKind(str, lambda value: value if value == "auto" else f"{value:g}°
 _BUILD = ValueKind(BuildErrors, str)
 _ROOT = ValueKind(float, lambda value: f"at least {value:g} mm")
 
-
-@dataclass(frozen=True)
-class Option:
-    """One option of `design`.
-
-    Attributes
-    ----------
-    flag : str
-        As the command line takes it; without its dashes the key in a TOML file.
-    path : str
-        Where its value stands in a `Request`.
-    kind : ValueKind
-    help : str
-    above, least : float or None
-        Bounds: the value is greater than ``above``, and at least ``least``.
-    absent : str
-        What the report says where no value is given.
-    metavar : str
-    main : bool
-        Whether the report lists it even where it has its default.
-    off : bool
-        Whether there is a flag to turn it off, too.
-    """
-
-    flag: str
-    path: str
-    kind: ValueKind
-    help: str
-    above: float | None = None
-    least: float | None = None
-    absent: str = "not given"
-    metavar: str | None = None
-    main: bool = False
-    off: bool = False
-
-    @property
-    def field(self) -> str:
-        """Name of the field that holds the value, as messages name it."""
-        return self.path.rpartition(".")[2]
-
-    def value(self, request: Request) -> Any:
-        """Value of the option in a request."""
-        holder, _, name = self.path.rpartition(".")
-        return getattr(getattr(request, holder) if holder else request, name)
-
-    def shown(self, request: Request) -> str:
-        """Value of the option in a request, in words."""
-        value = self.value(request)
-        return self.absent if value is None else self.kind.show(value)
-
-
+_OBJECT = Option(
+    "--object", "solid", _choice("auto", "turned", "extruded"),
+    "What the actuator meets: the profile turned about the object's axis, or the same at every "
+    "depth (auto: turned where it keeps to its side of the axis).",
+)  # fmt: skip
 DESIGN = (
     Option(
         "--height", "scale.height_mm", _MM, "Full height of the object, drawn or pictured, mm.",
@@ -257,6 +191,17 @@ DESIGN = (
         off=True,
     ),
     Option(
+        "--no-grip", "grip", _YES,
+        "Leave out to press the verified actuator on its object, and to choose the pressure to "
+        "work at there.", off=True,
+    ),
+    Option(
+        "--grip", "grip_N", _number(" N"),
+        "Normal force of one finger on its object to choose the pressure to work at by, N "
+        "(default: the pressure of the least expected misfit).", above=0.0, metavar="N",
+    ),
+    _OBJECT,
+    Option(
         "--nu", "model.nu", _RATIO,
         "Poisson's ratio of the rubber (default: its own; the paper's 0.46).", least=0.0,
         absent="the rubber's own",
@@ -275,6 +220,32 @@ DESIGN = (
         metavar="none|down|up|level|DEG",
     ),
 )  # fmt: skip
+GRIP = (
+    Option(
+        "--pressure", "pressures_bar", _list(" bar"),
+        "Pressures, bar (default: the design's own, and up to 1.2 times as much).",
+        metavar="BAR,...",
+    ),
+    Option(
+        "--friction", "friction", _list(""),
+        "Coefficients of friction to tell the payload at (default: 0 to 1).", metavar="MU,...",
+    ),
+    Option("--fingers", "fingers", _COUNT, "Fingers around the object.", least=1),
+    _OBJECT,
+    Option(
+        "--clearance", "clearance_mm", _MM, "Gap that the profile keeps from the object, mm.",
+        least=0.0,
+    ),
+    Option(
+        "--max-contact-kpa", "max_contact_kpa", _number(" kPa"),
+        "Contact pressure that the object bears, kPa.", above=0.0,
+    ),
+    Option(
+        "--against", "against", ValueKind(str, str),
+        "Something else in place of the object, such as a load cell: plane:X,Y,DEG with its normal "
+        "at DEG, cylinder:X,Y,R, sphere:X,Y,R; mm.", metavar="KIND:X,Y,NUMBER",
+    ),
+)  # fmt: skip
 MODEL = tuple(row for row in DESIGN if row.path.startswith("model."))
 # Fields of other records and commands that messages name.
 _OTHERS = {
@@ -282,9 +253,11 @@ _OTHERS = {
     "alpha_center_deg": "--alpha-center", "base": "--from", "runs": "--runs",
     "scheduler": "--scheduler", "workers": "--workers", "alpha_deg": "--alpha",
     "openF_mm": "--openF", "theta_deg": "--theta", "tip_mm": "--tip", "at_bar": "--at",
-    "angles": "--angles", "joint": "--joint", "move_mm": "--move",
+    "angles": "--angles", "pressures": "--pressures",
+    "lines": "--lines", "tube": "--tube", "joint": "--joint",
+    "move_mm": "--move",
 }  # fmt: skip
-FLAGS: Mapping[str, str] = {**{row.field: row.flag for row in DESIGN}, **_OTHERS}
+FLAGS: Mapping[str, str] = {**{row.field: row.flag for row in (*DESIGN, *GRIP)}, **_OTHERS}
 
 
 def in_flags(text: str) -> str:

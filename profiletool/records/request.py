@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 from profiletool.records.built import BuildErrors
 from profiletool.records.clamp import LEAST_MM, Clamp
+from profiletool.records.grip_request import Solid
 from profiletool.records.model import ModelInputs
 from profiletool.records.side import Side
 
@@ -180,6 +181,12 @@ class Request:
     build : BuildErrors
     verify, refine : bool
         Whether finite elements verify the design, and correct it before.
+    grip : bool
+        Whether finite elements press the verified actuator on its object.
+    grip_N : float or None
+        Normal force on the object to work with; None for the least expected misfit.
+    solid : {"auto", "turned", "extruded"}
+        What the profile is of: see `profiletool.records.grip.GripRequest`.
     model : ModelInputs
         What finite elements take.
     given : Picture, DrawnLine, Profile or None
@@ -207,5 +214,8 @@ class Request:
     build: BuildErrors = field(default_factory=BuildErrors)
     verify: bool = True
     refine: bool = True
+    grip: bool = True
+    grip_N: float | None = None
+    solid: Solid = "auto"
     model: ModelInputs = field(default_factory=ModelInputs)
     given: Picture | DrawnLine | Profile | None = None

@@ -44,6 +44,10 @@ class PressureSetting:
         Distance of the measured tip from the way of the nominal one; None where angles were read.
     rms_deg : float or None
         Of what remains of the angles; None where the tip was measured.
+    fit_mm : float or None
+        RMS off the profile, as finite elements of the calibrated tube have it; None elsewhere.
+    dead_bar : float
+        Of ``pressure_bar``: what the gauge reads too much.
     joints_off : tuple of int
         Joints that bend otherwise than the others let expect.
     beyond : bool
@@ -57,6 +61,8 @@ class PressureSetting:
     stiffness: float
     off_mm: float | None = None
     rms_deg: float | None = None
+    fit_mm: float | None = None
+    dead_bar: float = 0.0
     joints_off: tuple[int, ...] = ()
     beyond: bool = False
     notes: tuple[str, ...] = ()

@@ -10,6 +10,7 @@ from profiletool.pipeline import Result
 from profiletool.records.design import Design
 from profiletool.records.fe import Verification
 from profiletool.records.frames import Shape
+from profiletool.records.grip import Grip
 from profiletool.records.request import Request
 from profiletool.records.seal import proven
 from profiletool.report.asked import options_of
@@ -43,6 +44,8 @@ class Dossier:
     most_bar : float
         Highest pressure that was asked for.
     request : Request
+    grip : Grip or None
+        The finger on its object.
     """
 
     scene: Scene
@@ -55,6 +58,7 @@ class Dossier:
     options: Sequence[AskedOption]
     most_bar: float
     request: Request
+    grip: Grip | None = None
 
     @property
     def found(self) -> Verification | None:
@@ -87,6 +91,7 @@ def dossier_of(result: Result, scene: Scene, template_svg: str) -> Dossier:
         template_svg=template_svg,
         options=options_of(result.request),
         most_bar=result.request.tube.max_pressure_bar,
+        grip=result.grip,
         request=result.request,
     )
 

@@ -13,20 +13,24 @@ from dataclasses import dataclass
 import numpy as np
 
 from profiletool.records.design import Design
-from profiletool.records.fe import Verification
+from profiletool.records.fe import FeState, Verification
 from profiletool.records.frames import Shape
+from profiletool.records.grip import Grip, GripState
 from profiletool.records.units import FloatArray, IntArray
 
 _POINTS = 84  # of a line, at most some more
 _PER_MM = 100
+_ABOVE = 0.01  # of the last free pressure: from there on states against the object follow
 
 
 @dataclass(frozen=True)
 class Film:
-    """States of a tube, from rest on.
+    """States of a tube, from rest on: free up to ``shown``, beyond it against its object.
 
     Attributes
     ----------
+    shown : int
+        The state that is drawn where nothing moves: the last free one.
     pressure_bar : (S,)
     theta_deg : (S, n)
         Positive toward the object.
@@ -37,6 +41,7 @@ class Film:
         Where on the lines each joint's cut starts, has its centre, and ends.
     """
 
+    shown: int
     pressure_bar: FloatArray
     theta_deg: FloatArray
     air_ml: FloatArray
@@ -49,24 +54,25 @@ class Film:
         return len(self.lines) > 1
 
     def outline(self) -> str:
-        """Path of the whole tube in its last state."""
-        facing, far = self.lines[-1]
+        """Path of the whole tube as it is shown."""
+        facing, far = self.lines[self.shown]
         return ring_path(facing, far)
 
     def window(self, joint: int) -> str:
-        """Path of a joint's cut in the last state; joints count from 0 here."""
+        """Path of a joint's cut as it is shown; joints count from 0 here."""
         start, _, end = self.windows[joint].tolist()
-        facing, far = self.lines[-1]
+        facing, far = self.lines[self.shown]
         return ring_path(facing[start : end + 1], far[start : end + 1])
 
     def centre(self, joint: int) -> tuple[str, str]:
-        """Place of a joint's middle in the last state, mm, y down as in SVG."""
-        x, y = self.lines[-1, :, self.windows[joint, 1]].sum(axis=0) // 2
+        """Place of a joint's middle as it is shown, mm, y down as in SVG."""
+        x, y = self.lines[self.shown, :, self.windows[joint, 1]].sum(axis=0) // 2
         return _mm(int(x)), _mm(int(y))
 
     def as_json(self) -> str:
         """Write all states for the page's script."""
         tree = {
+            "shown": self.shown,
             "bar": np.round(self.pressure_bar, 4).tolist(),
             "theta": np.round(self.theta_deg, 4).tolist(),
             "air": np.round(self.air_ml, 3).tolist(),
@@ -76,12 +82,16 @@ class Film:
         return json.dumps(tree, separators=(",", ":"), allow_nan=False)
 
 
-def film_of(found: Verification, design: Design) -> Film:
-    """Take the states of a finite-element run, rest among them."""
-    states = (found.rest, *found.states)
+def film_of(found: Verification, design: Design, grip: Grip | None = None) -> Film:
+    """Take the states of a finite-element run, rest among them, and harder ones on the object."""
+    free = (found.rest, *found.states)
+    most = found.last.pressure_bar * (1.0 + _ABOVE)
+    held = () if grip is None else tuple(s for s in grip.states if s.pressure_bar > most)
+    states: tuple[FeState | GripState, ...] = (*free, *held)
     return _film(
         [state.shape for state in states],
         design,
+        len(free) - 1,
         np.array([state.pressure_bar for state in states]),
         np.array([state.theta_deg for state in states]),
         np.array([state.air_ml for state in states]),
@@ -91,7 +101,7 @@ def film_of(found: Verification, design: Design) -> Film:
 def still_of(shape: Shape, design: Design) -> Film:
     """Make a film of a single shape, without angles and air."""
     n = len(design.joints)
-    return _film([shape], design, np.zeros(1), np.zeros((1, n)), np.zeros(1))
+    return _film([shape], design, 0, np.zeros(1), np.zeros((1, n)), np.zeros(1))
 
 
 def ring_path(facing: IntArray, far: IntArray) -> str:
@@ -110,12 +120,17 @@ def drawn(points: FloatArray) -> IntArray:
 
 
 def _film(
-    shapes: Sequence[Shape], design: Design, bar: FloatArray, theta: FloatArray, air: FloatArray
+    shapes: Sequence[Shape],
+    design: Design,
+    shown: int,
+    bar: FloatArray,
+    theta: FloatArray,
+    air: FloatArray,
 ) -> Film:
     along = shapes[0].along
     kept, windows = _thinned(along, design)
     lines = np.array([[shape.facing[kept], shape.far[kept]] for shape in shapes])
-    return Film(bar, theta, air, drawn(lines), windows)
+    return Film(shown, bar, theta, air, drawn(lines), windows)
 
 
 def _thinned(along: FloatArray, design: Design) -> tuple[IntArray, IntArray]:

@@ -9,19 +9,18 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import PurePath
 
-from matplotlib.figure import Figure
-
 from profiletool.records.fe import Verification
 from profiletool.records.seal import proven
 from profiletool.report.dossier import Dossier
 from profiletool.report.error import error_figure
 from profiletool.report.expectation import expectation
-from profiletool.report.figure import svg
 from profiletool.report.film import Film, film_of, still_of
-from profiletool.report.markup import Markup, adopted, joined, pairs, tag, text
+from profiletool.report.gripping import gripping
+from profiletool.report.markup import Markup, adopted, joined, pairs, tag
 from profiletool.report.measured import measured
 from profiletool.report.neighbours import neighbours
 from profiletool.report.plots import theta_figure
+from profiletool.report.plotted import plotted
 from profiletool.report.stage import controls, legend, readout, stage
 from profiletool.report.steps import steps
 from profiletool.report.tables import joint_table, loads, provenance, sensitivity_table
@@ -91,7 +90,9 @@ def _sections(dossier: Dossier, film: Film) -> list[_Section]:
             "Distance to the profile that the best choice of joints leaves, as the "
             f"{scene.by} predicts it, for every number of joints and every pressure."
         )
-        parts.append(_Section("trade-off", "More joints, more pressure", _plot(figure, "to", said)))
+        parts.append(
+            _Section("trade-off", "More joints, more pressure", plotted(figure, "to", said))
+        )
     if design.neighbours:
         told = neighbours(design, dossier.request)
         parts.append(_Section("neighbours", "Neighbours of this design", told))
@@ -103,6 +104,9 @@ def _sections(dossier: Dossier, film: Film) -> list[_Section]:
     parts.append(_Section("template", "Cut template", _template(dossier)))
     if design.built is not None:
         parts.append(_Section("built", "What to expect of the built actuator", expectation(design)))
+    if dossier.grip is not None and dossier.grip.states:
+        told = gripping(dossier.grip, design, scene.profile.points)
+        parts.append(_Section("grip", "Against its object", told))
     if design.sensitivity:
         parts.append(_Section("sensitivity", "What small errors do", sensitivity_table(design)))
     told = provenance(design, found, dossier.options)
@@ -179,7 +183,10 @@ def _notes(dossier: Dossier) -> list[str]:
 
 def _film(dossier: Dossier) -> Film:
     scene, found = dossier.scene, dossier.found
-    return still_of(scene.bent, scene.design) if found is None else film_of(found, scene.design)
+    if found is None:
+        return still_of(scene.bent, scene.design)
+    # A shape that misses the object would jump where the object comes.
+    return film_of(found, scene.design, dossier.grip if scene.design.feasible else None)
 
 
 def _shape(dossier: Dossier, film: Film) -> Markup:
@@ -191,6 +198,8 @@ def _shape(dossier: Dossier, film: Film) -> Markup:
             "The slider's ticks are the pressures that finite elements were run at; between them "
             "the shape is interpolated."
         )
+        if film.shown < len(film.lines) - 1:
+            said += f" Beyond {film.pressure_bar[film.shown]:.2f} bar the object is in the way."
         aside.append(tag("p", said, class_="small screen"))
     if dossier.unverified is not None:
         aside.append(tag("p", _short_of(dossier), class_="mind"))
@@ -220,7 +229,7 @@ def _error(dossier: Dossier) -> Markup:
         "the arc: positive off the object, negative pressed into it. Grey: the joints' cuts, "
         "numbered."
     )
-    return _plot(figure, "error", said)
+    return plotted(figure, "error", said)
 
 
 def _pressure(dossier: Dossier, found: Verification) -> Markup:
@@ -233,7 +242,7 @@ def _pressure(dossier: Dossier, found: Verification) -> Markup:
     title = tag("h3", f"What the tube bears at {found.last.pressure_bar:.2f} bar")
     return tag(
         "div",
-        _plot(figure, "theta", said),
+        plotted(figure, "theta", said),
         tag("div", title, loads(found.last, dossier.scene.design)),
         class_="two",
     )
@@ -259,12 +268,6 @@ def _template(dossier: Dossier) -> Markup:
         "figure", tag("div", adopted(dossier.template_svg, "template-"), class_="sheet"),
         tag("figcaption", said), class_="plot",
     )  # fmt: skip
-
-
-def _plot(figure: Figure, name: str, said: str) -> Markup:
-    drawn = adopted(svg(figure), f"{name}-")
-    named = Markup(drawn.replace("<svg", f'<svg role="img" aria-label="{text(said)}"', 1))
-    return tag("figure", tag("div", named, class_="drawn"), tag("figcaption", said), class_="plot")
 
 
 def _states(film: Film) -> Markup:

@@ -11,17 +11,20 @@
   const substeps = Number(slider.dataset.substeps);
   const last = film.bar.length - 1;
   const end = last * substeps;
+  const shown = film.shown * substeps; // free until here, beyond it against the object
   const half = film.lines[0].length / 2;
   const SECONDS = 5;
 
   // One row of numbers a state: all that changes with pressure.
   const rows = film.bar.map((_, k) => [film.air[k], ...film.theta[k], ...film.lines[k]]);
-  const slopes = rows.map((_, k) => slope(k));
+  // The free states make one curve, those against the object another.
+  const curves = [[0, film.shown], [film.shown, last]].map(([first, end]) =>
+    rows.map((_, k) => (first < end && first <= k && k <= end ? slope(k, first, end) : null)));
 
-  function slope(k) {
+  function slope(k, first, end) {
     const rate = (a) => rows[a].map((v, i) => (rows[a + 1][i] - v) / (film.bar[a + 1] - film.bar[a]));
-    if (last === 1) return rate(0);
-    const a = Math.min(Math.max(k - 1, 0), last - 2); // three states at or around this one
+    if (end - first === 1) return rate(first);
+    const a = Math.min(Math.max(k - 1, first), end - 2); // three states at or around this one
     const [before, after] = [rate(a), rate(a + 1)];
     const [p, q, r] = [film.bar[a], film.bar[a + 1], film.bar[a + 2]];
     const share = (2 * film.bar[k] - p - q) / (r - p);
@@ -33,6 +36,7 @@
     const t = step / substeps - k;
     const width = film.bar[k + 1] - film.bar[k];
     const [s, u] = [t * t * (3 - 2 * t), 1 - t];
+    const slopes = curves[k < film.shown ? 0 : 1];
     const row = rows[k].map((v, i) =>
       v + s * (rows[k + 1][i] - v) +
       width * t * u * (u * slopes[k][i] - t * slopes[k + 1][i]));
@@ -92,16 +96,16 @@
 
   button.addEventListener("click", () => {
     if (started !== null) return stop();
-    const from = Number(slider.value) % end; // from the end it starts again
+    const from = Number(slider.value) < shown ? Number(slider.value) : 0;
     started = performance.now() - (from / end) * SECONDS * 1000;
     button.textContent = "Stop";
     requestAnimationFrame(tick);
   });
   slider.addEventListener("input", () => { stop(); show(Number(slider.value)); });
-  addEventListener("beforeprint", () => { stop(); slider.value = end; show(end); });
+  addEventListener("beforeprint", () => { stop(); slider.value = shown; show(shown); });
 
-  slider.value = end; // some browsers remember where it stood
-  show(end);
+  slider.value = shown; // some browsers remember where it stood
+  show(shown);
   document.getElementById("controls").hidden = false;
   document.getElementById("still").hidden = true;
 })();

@@ -17,6 +17,10 @@ def setting_text(found: PressureSetting) -> str:
         lines.append(f"its tip lies {found.off_mm:.1f} mm off the way of the planned one")
     if found.rms_deg is not None:
         lines.append(f"its angles lie {found.rms_deg:.1f} deg RMS off those of the planned one")
+    if found.fit_mm is not None:
+        lines.append(f"there it lies {found.fit_mm:.2f} mm RMS off the profile, by finite elements")
+    if found.dead_bar:
+        lines.append(f"of that the gauge reads {found.dead_bar:+.2f} bar too much")
     lines += [f"note: {note}" for note in found.notes]
     return "\n".join(lines) + "\n"
 
@@ -34,4 +38,6 @@ def setting_json(found: PressureSetting) -> str:
         "beyond": found.beyond,
         "notes": list(found.notes),
     }
+    if found.fit_mm is not None:
+        tree |= {"fit_mm": round(found.fit_mm, 3), "dead_bar": round(found.dead_bar, 4)}
     return json.dumps(tree, allow_nan=False) + "\n"

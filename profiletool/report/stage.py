@@ -104,12 +104,12 @@ def legend(scene: Scene, film: Film, *, by_fe: bool) -> Markup:
 
 def controls(film: Film) -> Markup:
     """Make the slider that inflates the tube; hidden until the script shows it."""
-    last = len(film.lines) - 1
+    last, shown = len(film.lines) - 1, film.shown
     ticks = (tag("option", value=str(k * _SUBSTEPS)) for k in range(last + 1))
     slider = tag(
         "input", type="range", id="slider", min="0", max=str(last * _SUBSTEPS), step="1",
-        value=str(last * _SUBSTEPS), list="pressures", data_substeps=str(_SUBSTEPS),
-        aria_label="Pressure", aria_valuetext=f"{film.pressure_bar[-1]:.2f} bar",
+        value=str(shown * _SUBSTEPS), list="pressures", data_substeps=str(_SUBSTEPS),
+        aria_label="Pressure", aria_valuetext=f"{film.pressure_bar[shown]:.2f} bar",
     )  # fmt: skip
     return tag(
         "div",
@@ -127,16 +127,16 @@ def readout(film: Film) -> Markup:
     """Make the display of pressure, angles and air of the state that is shown."""
     rows = [
         (f"{k + 1}", tag("span", signed(theta, 1, "°"), class_="theta"))
-        for k, theta in enumerate(np.round(film.theta_deg[-1], 4).tolist())
+        for k, theta in enumerate(np.round(film.theta_deg[film.shown], 4).tolist())
     ]
-    air = tag("span", f"{film.air_ml[-1]:.1f}", id="air")
+    air = tag("span", f"{film.air_ml[film.shown]:.1f}", id="air")
     rows.append(("air", tag("span", air, " ml")))
     caption = tag("span", "At ", _gauge(film), "; angles positive toward the object")
     return tag("div", table(("Joint", "θ"), rows, caption), class_="readout")
 
 
 def _gauge(film: Film) -> Markup:
-    return tag("span", tag("span", f"{film.pressure_bar[-1]:.2f}", class_="bar"), " bar")
+    return tag("span", tag("span", f"{film.pressure_bar[film.shown]:.2f}", class_="bar"), " bar")
 
 
 def frame_of(scene: Scene, film: Film) -> StageFrame:
@@ -156,7 +156,7 @@ def frame_of(scene: Scene, film: Film) -> StageFrame:
 
 def _told(scene: Scene, film: Film, by_fe: bool) -> str:
     if by_fe:
-        return f"by finite elements at {film.pressure_bar[-1]:.2f} bar"
+        return f"by finite elements at {film.pressure_bar[film.shown]:.2f} bar"
     return f"as the {scene.by} bends it at {scene.design.pressure_bar:.2f} bar"
 
 

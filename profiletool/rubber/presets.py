@@ -15,7 +15,7 @@ from formula.rubber import RubberLaw
 from profiletool.errors import UnreadableInput, UsageError
 from profiletool.files.columns import NUMBER
 from profiletool.files.read import read_file
-from profiletool.records.rubber import constants_text
+from profiletool.records.rubber import constants_text, law_of
 from profiletool.rubber.columns import first_loading
 from profiletool.rubber.uniaxial import STIFFNESSES, fit_uniaxial, read_uniaxial, uniaxial_stress
 
@@ -116,6 +116,11 @@ PRESETS: Mapping[str, Rubber] = MappingProxyType(
         )
     }
 )
+
+
+def rubber_of(law: RubberLaw, source: str) -> Rubber:
+    """Take the rubber of a file."""
+    return Rubber(law.name, law_of(law), source)
 
 
 def parse_rubber(text: str) -> Rubber:

@@ -15,6 +15,7 @@ from profiletool.joints.windows import best_seam
 from profiletool.records.design import Design, Fit, FormulaRef, Gauze, Source, Tube
 from profiletool.records.fe import FeState
 from profiletool.records.frames import Shape
+from profiletool.records.grip import Grip
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request
 from profiletool.records.units import FloatArray
@@ -39,6 +40,8 @@ class Draft:
         The finite-element run; None where none was asked for.
     band : (2, M, 2) array or None
         Edges of the band about the object-facing line that holds 95 % of builds, mm.
+    grip : Grip or None
+        The finger on its object, by finite elements.
     """
 
     request: Request
@@ -49,6 +52,7 @@ class Draft:
     shape: Shape
     check: Check | None
     band: FloatArray | None
+    grip: Grip | None
 
     @property
     def profile(self) -> Profile:
@@ -87,7 +91,7 @@ def attempt_of(request: Request, subject: Subject, formula: Formula, plan: Plan)
     radius = request.tube.radius_mm
     shape = deform(layout.bends(), layout.length_mm, radius, layout.pose, profile.sign)
     design = _design(request, subject, formula, plan, shape)
-    return Draft(request, subject, formula, plan, design, shape, None, None)
+    return Draft(request, subject, formula, plan, design, shape, None, None, None)
 
 
 def _design(

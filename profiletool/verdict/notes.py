@@ -30,6 +30,7 @@ from profiletool.verify.check import Check
 
 _FORMULA_LOW_ABOVE_BAR = 1.2
 _SLACK_SHARE = 0.1
+_SHORT = 0.02  # of a force, that is close enough
 _BULGES_ABOVE_BAR = 2.0
 SLACK = 0.05  # mm or deg that nobody can see
 DEPTH_MM = 1.0  # a tube that presses deeper into the object is warned of
@@ -52,6 +53,7 @@ def notes_of(attempt: Draft, reasons: Sequence[str], misses: Sequence[Missed]) -
         *_coarse(design),
         *_mounting_notes(attempt),
         *_fe_notes(attempt.check),
+        *_grip_notes(attempt),
         *model_notes(design, request.method == "optimal" and request.refine),
     )
 
@@ -199,6 +201,24 @@ def _fe_notes(checked: Check | None) -> Iterator[str]:
     elif checked.run is not None:
         yield from wear(checked.run.verification.last, checked.design)
         yield from uncertain(checked.design.theta_uncertain)
+
+
+def _grip_notes(attempt: Draft) -> Iterator[str]:
+    """Say what a finger on its object does not reach."""
+    grip, asked = attempt.grip, attempt.request.grip_N
+    if grip is None:
+        return
+    if grip.failure is not None:
+        yield f"against its object: {grip.failure}"
+    bar = attempt.design.operate_bar
+    if asked is None or bar is None:
+        return
+    found = grip.normal_at(bar)
+    if found < asked * (1.0 - _SHORT):
+        yield (
+            f"one finger presses on its object with {found:.2f} N at {bar:.2f} bar, not with "
+            f"{asked:g} N: raise `max_pressure_bar`, or take a wider tube"
+        )
 
 
 def _coarse(design: Design) -> Iterator[str]:

@@ -31,6 +31,12 @@ def joint_table(design: Design) -> str:
         lines.append(f"by FE off the profile:                 {off_text(design.fit.fe)}")
     if design.built is not None:
         lines.append(f"built by hand, off the profile:        {built_text(design.built)}")
+    if design.operate_bar is not None and design.built is not None:
+        off = mm_text(design.built.expected_rms_mm.in_contact)
+        lines.append(
+            f"against its object, work at:           {design.operate_bar:.2f} bar; {off} mm RMS "
+            "expected there"
+        )
     if design.fit.response is not None:
         lines.append(f"by the joint response off the profile: {off_text(design.fit.response)}")
     lines.append(f"by the formula off the profile:        {off_text(design.fit.formula)}")

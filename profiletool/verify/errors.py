@@ -2,23 +2,39 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from fem.errors import FemError
 from profiletool.records.built import BuildErrors, BuiltMisfit
 from profiletool.records.design import Design
 from profiletool.records.units import FloatArray
 from profiletool.verify.built import band_of, built_of
-from profiletool.verify.fields import fields_of
+from profiletool.verify.fields import ErrorFields, fields_of
 from profiletool.verify.run import Run
 from profiletool.verify.sensitivity import sensitivity_of
 from profiletool.verify.threads import sheet_off
 from profiletool.verify.trim import trim_of
 
 
-def with_errors(
-    design: Design, run: Run, points: FloatArray, build: BuildErrors
-) -> tuple[Design, FloatArray | None]:
+@dataclass(frozen=True)
+class Expected:
+    """A verified design with what errors of the build do to it.
+
+    Attributes
+    ----------
+    design : Design
+    band : (2, M, 2) array or None
+        Edges of the band about the object-facing line that holds 95 % of builds, mm.
+    fields : ErrorFields or None
+        Both None where FE's tangent allows no derivatives.
+    """
+
+    design: Design
+    band: FloatArray | None = None
+    fields: ErrorFields | None = None
+
+
+def with_errors(design: Design, run: Run, points: FloatArray, build: BuildErrors) -> Expected:
     """Add what errors of the build do to a verified design, and how to set its pressure.
 
     Parameters
@@ -29,20 +45,14 @@ def with_errors(
     points : (M, 2) mm
         Of the profile, evenly spaced.
     build : BuildErrors
-
-    Returns
-    -------
-    Design
-    (2, M, 2) array or None
-        Edges of the band about the object-facing line that holds 95 % of builds, mm; None where
-        FE's tangent allows no derivatives.
     """
     design = replace(design, trim=trim_of(design, run), threads_off_mm=_threads_off(design, run))
     fields = fields_of(design, run, points)
     if fields is None:
-        return design, None
+        return Expected(design)
     sensitivity, built = sensitivity_of(design, fields, points), built_of(design, fields, build)
-    return replace(design, sensitivity=sensitivity, built=built), band_of(design, fields, build)
+    told = replace(design, sensitivity=sensitivity, built=built)
+    return Expected(told, band_of(design, fields, build), fields)
 
 
 def _threads_off(design: Design, run: Run) -> BuiltMisfit | None:

@@ -36,7 +36,8 @@ def coarse_mesh(monkeypatch: pytest.MonkeyPatch) -> None:
     import fem
 
     coarse = partial(fem.solve, size=fem.MeshSize(beside=0.0, edge=0.4))
-    monkeypatch.setattr("profiletool.verify.run.solve", coarse)
+    for module in ("run", "grip"):
+        monkeypatch.setattr(f"profiletool.verify.{module}.solve", coarse)
 
 
 @pytest.fixture(scope="session")

@@ -65,9 +65,9 @@ def test_from_angles(file: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        ((), "give one of --tip and --angles"),
+        ((), "give one of --tip, --angles and --tube"),
         (("--tip", "1,2"), "--tip and --at go together"),
-        (("--at", "1"), "give one of --tip and --angles"),
+        (("--at", "1"), "give one of --tip, --angles and --tube"),
         (("--tip", "1,2", "--at", "1", "--angles", "a.csv"), "give one of"),
         (("--angles", "a.csv", "--at", "1"), "--tip and --at go together"),
         (("--tip", "1", "--at", "1"), "expected 2 numbers"),

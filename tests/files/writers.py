@@ -15,11 +15,12 @@ FILES = 12
 
 # Writes folders, or files, that tell whose they are; argv: place, whose, times, force, file.
 WRITER = """
-import sys
+import signal, sys
 from pathlib import Path
 from profiletool.errors import ProfiletoolError
 from profiletool.files.write import write_file, write_folder
 place, whose, times, force, as_file = Path(sys.argv[1]), sys.argv[2], *map(int, sys.argv[3:])
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background ignores it
 print("ready", flush=True)
 sys.stdin.readline()
 for turn in range(times):

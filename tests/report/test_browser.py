@@ -42,7 +42,7 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
 
 @pytest.fixture(scope="module")
 def result(samples: Path) -> Result:
-    asked = Request(samples / "egg.png", method="paper", joints=2, verify=True)
+    asked = Request(samples / "egg.png", joints=3, verify=True)
     return run(asked, lambda line: None)
 
 
@@ -57,7 +57,9 @@ def page(result: Result, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def film(result: Result) -> Film:
     assert result.check is not None
     assert result.check.run is not None
-    return film_of(result.check.run.verification, result.design)
+    assert result.design.feasible
+    assert result.grip is not None
+    return film_of(result.check.run.verification, result.design, result.grip)
 
 
 @pytest.fixture(scope="module")
@@ -115,7 +117,6 @@ def test_the_slider_moves_the_tube(browser: Browser, page: Path, film: Film) -> 
     static = browser.tube
     assert static == film.outline()
     substeps = int(browser.js("document.getElementById('slider').dataset.substeps"))
-    last = int(browser.js("Number(document.getElementById('slider').max)"))
     assert browser.js("document.getElementById('controls').offsetHeight") > 0
     assert browser.js("document.getElementById('still').offsetHeight") == 0
     seen = set()
@@ -132,7 +133,7 @@ def test_the_slider_moves_the_tube(browser: Browser, page: Path, film: Film) -> 
     browser.move(0)
     assert browser.tube != static
     assert browser.theta == [0.0] * len(film.windows)
-    browser.move(last)
+    browser.move(film.shown * substeps)
     assert browser.tube == static
 
 
@@ -155,13 +156,14 @@ def test_between_pressures_lines_keep_their_lengths(
 
 def test_joints_and_cuts_go_along(browser: Browser, page: Path) -> None:
     browser.open(page)
+    shown = int(browser.js("document.getElementById('slider').value"))
     places = "[...document.querySelectorAll('[data-joint]')].map(e => e.getAttribute('transform'))"
     cuts = "[...document.querySelectorAll('[data-window]')].map(e => e.getAttribute('d'))"
     before = browser.js(places), browser.js(cuts)
     browser.move(0)
     assert all(a != b for a, b in zip(browser.js(places), before[0], strict=True))
     assert all(a != b for a, b in zip(browser.js(cuts), before[1], strict=True))
-    browser.move(int(browser.js("document.getElementById('slider').max")))
+    browser.move(shown)
     assert (browser.js(places), browser.js(cuts)) == before
 
 
@@ -217,7 +219,7 @@ def test_without_a_script_the_final_shape_is_there(
         assert not browser.driver.find_element("id", "slider").is_displayed()
         assert not browser.driver.find_element("id", "play").is_displayed()
         said = browser.driver.find_element("css selector", ".readout").text
-        for theta in np.round(film.theta_deg[-1], 4):
+        for theta in np.round(film.theta_deg[film.shown], 4):
             assert f"{theta:.1f}°".replace("-", MINUS) in said
         assert browser.driver.find_element("id", "still").is_displayed()
     finally:
@@ -247,8 +249,8 @@ def length(line: np.ndarray) -> float:
 
 
 def final(browser: Browser) -> str:
-    """The tube with the slider at its end."""
-    browser.move(int(browser.js("document.getElementById('slider').max")))
+    """The tube as it is shown first."""
+    browser.move(int(browser.js("document.getElementById('slider').defaultValue")))
     return browser.tube
 
 

@@ -18,6 +18,6 @@ def coarse_mesh(request: pytest.FixtureRequest) -> Iterator[None]:
     """Solve on the mesh that a test file names as MESH, else on a coarse one."""
     size = getattr(request.module, "MESH", COARSE)
     with pytest.MonkeyPatch.context() as patch:
-        for module in ("run", "forward", "sample", "threads"):
+        for module in ("run", "forward", "sample", "threads", "grip"):
             patch.setattr(f"profiletool.verify.{module}.solve", partial(fem.solve, size=size))
         yield

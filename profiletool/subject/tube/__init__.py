@@ -1,0 +1,1 @@
+"""The inflated tube in a picture: found, and its joints' angles measured."""
