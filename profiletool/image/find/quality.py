@@ -208,7 +208,8 @@ def _constancy(colours: FloatImage, step: FloatImage, free: NDArray[np.bool_]) -
     """Say how little the colour just inside changes along an outline, against the step there."""
     middle = colours.shape[1] // 2
     inside = colours[:, middle - 4 : middle - 1].mean(axis=1)
-    spread = np.linalg.norm(np.sqrt(np.maximum(_running(inside**2) - _running(inside) ** 2, 0.0)), axis=1)
+    variance = np.maximum(_running(inside**2) - _running(inside) ** 2, 0.0)
+    spread = np.sqrt(variance.sum(axis=1))
     size = _running(np.linalg.norm(step, axis=1, keepdims=True))[:, 0]
     return float(np.clip(1.0 - spread / np.maximum(size, 1e-6), 0.0, 1.0)[free].mean())
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from profiletool.image.find.across import rim_of, steps
-from profiletool.image.find.colours import cells, histogram, likeness
 from profiletool.image.find.candidates import BELIEVED
+from profiletool.image.find.colours import cells, histogram, likeness
 from profiletool.image.find.judge import Region, judged
 from profiletool.image.find.masks import overlap
 from profiletool.image.find.mosaic import cut, mosaic_of, polished
