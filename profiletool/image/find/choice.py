@@ -19,7 +19,7 @@ _EXTENT, _LOOSE = 0.7, 0.6  # overlap of a mask's own box with the one given, cl
 _BY_WIDTH = 3.0  # merit that a point takes from what is as large as the picture
 _NEAR, _LITTLE = 0.7, 0.06  # merit behind the best; share of its area that is worth a word
 _SAME_SHOWN = 0.9  # overlap of two masks that look the same
-_RIVAL, _ALONE = 2.0, 0.5  # merit behind the best; confidence that a rival alone would have
+_RIVAL, _ALONE = 2.0, 0.5  # merit behind the best; confidence that each would have alone
 
 
 def fitting(found: Sequence[Candidate], barred: BoolImage) -> list[Candidate]:
@@ -96,15 +96,19 @@ def _side(part: BoolImage, mask: BoolImage) -> str:
 
 
 def refuse_another(best: Candidate, found: Sequence[Candidate]) -> None:
-    """Refuse when another object, alone, would be believed as much as the best candidate.
+    """Refuse when the best candidate and another, each alone, would both be believed.
 
     Raises
     ------
     SeveralAlike
     """
-    for other in found:
+    for other in found if _alone(best) > _ALONE else ():
         as_large = ALIKE < other.quality.size / best.quality.size < 1.0 / ALIKE
         apart = overlap(best.mask, other.mask) < _APART
         near = best.quality.merit - other.quality.merit < _RIVAL
-        if as_large and apart and near and replace(other.quality, share=1.0).confidence > _ALONE:
+        if as_large and apart and near and _alone(other) > _ALONE:
             raise SeveralAlike([best.mask, other.mask])
+
+
+def _alone(one: Candidate) -> float:
+    return replace(one.quality, share=1.0).confidence
