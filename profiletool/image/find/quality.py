@@ -30,7 +30,7 @@ _MERIT = {
     "width": -0.9, "middle": 6.1, "regained": 0.9, "agreement": 1.8,
     "on_sheet": 6.0, "sheet": -2.3, "within": -1.4, "clear": 1.1, "plain": 2.5, "pointed": 1.5,
 }  # fmt: skip
-_ODDS = {"share": 2.7, "clear": 1.3, "drawn_by": 1.4, "small": -3.0, "pointed": 1.0}
+_ODDS = {"share": 2.7, "clear": 1.3, "drawn_by": 1.4, "small": -3.0}
 _EDGELESS = 0.5  # with less of a firm edge, nothing else makes up for it
 _SMALL_WIDTH = 0.2  # of the picture: what is smaller shows less of itself
 _SECOND_OPINION = 0.85  # overlap with the learned one below which there is doubt
