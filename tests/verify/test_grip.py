@@ -127,6 +127,7 @@ def test_a_grip_is_told(found: Grip) -> None:
     assert len(grip_csv(found).splitlines()) == 3
 
 
+@pytest.mark.slow
 def test_the_finger_works_above_its_free_pressure(
     design: Design, run: Run, target: FloatArray
 ) -> None:
