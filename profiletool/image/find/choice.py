@@ -18,6 +18,7 @@ _APART = 0.05  # overlap below which two masks are two things
 _EXTENT, _LOOSE = 0.7, 0.6  # overlap of a mask's own box with the one given, close or loose
 _BY_WIDTH = 3.0  # merit that a point takes from what is as large as the picture
 _NEAR, _LITTLE = 0.7, 0.06  # merit behind the best; share of its area that is worth a word
+_ONE_THING = 0.8  # overlap from which on two masks are of one thing
 _SAME_SHOWN = 0.9  # overlap of two masks that look the same
 _RIVAL, _ALONE = 2.0, 0.5  # merit behind the best; confidence that each would have alone
 
@@ -65,6 +66,11 @@ def different(found: Sequence[Candidate]) -> list[Candidate]:
         if all(overlap(one.mask, other.mask) < _SAME_SHOWN for other in kept):
             kept.append(one)
     return kept
+
+
+def of_one_thing(one: Candidate, other: Candidate) -> bool:
+    """Whether two candidates are outlines of one thing."""
+    return overlap(one.mask, other.mask) > _ONE_THING
 
 
 def doubt_of(found: Sequence[Candidate]) -> str:

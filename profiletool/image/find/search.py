@@ -11,7 +11,14 @@ from numpy.typing import NDArray
 
 from profiletool.errors import NoObject, Unsure, UsageError
 from profiletool.image.find.candidates import BELIEVED, find_candidates
-from profiletool.image.find.choice import different, doubt_of, fitting, refuse_another, round_point
+from profiletool.image.find.choice import (
+    different,
+    doubt_of,
+    fitting,
+    of_one_thing,
+    refuse_another,
+    round_point,
+)
 from profiletool.image.find.ground import BoolImage, FloatImage
 from profiletool.image.find.hand import Hand, hand_at
 from profiletool.image.find.hint import Hint
@@ -31,6 +38,7 @@ _VIEW_PIXELS = 40_000  # candidates are found and judged at no more than this
 _RING_SHARE = 0.015  # of the region's size: what the smaller view may have missed
 _SAME = 0.95  # overlap of one region found at two sizes
 _SHOWN = 4
+_INSTEAD = 0.4  # confidence of another outline of the best candidate that is taken for it
 
 
 @dataclass(frozen=True)
@@ -121,6 +129,11 @@ def _chosen(view: View, rgb: NDArray[np.uint8], hint: Hint) -> tuple[Candidate, 
     best = found[0]
     if hint.point is None:
         refuse_another(best, found)
+    if best.confidence < BELIEVED:
+        surer = max(
+            (one for one in all_ if of_one_thing(best, one)), key=lambda one: one.confidence
+        )
+        best = surer if surer.confidence > _INSTEAD else best
     if best.confidence < BELIEVED:
         raise _unsure(
             found,
