@@ -8,7 +8,19 @@ from typing import Annotated, Any, cast
 
 import typer
 
-from profiletool.cli import again, deck, derive, design, fe, grip, table, template, trim, verify
+from profiletool.cli import (
+    again,
+    deck,
+    derive,
+    design,
+    fe,
+    grip,
+    studio,
+    table,
+    template,
+    trim,
+    verify,
+)
 from profiletool.cli.config import configured
 from profiletool.cli.console import KEPT
 from profiletool.cli.rows import parameters_of, with_signature
@@ -105,6 +117,7 @@ for _command, _example in (
     (again.edit, "profiletool edit bulb_design --joint 3 --alpha 132 --move 1 --out other"),
     (again.report, "profiletool report bulb_design/design.json --out whole"),
     (again.refine, "profiletool refine bulb_design/design.json --out better"),
+    (studio.studio, "profiletool studio bulb.png"),
     (template.template, "profiletool template bulb_design/design.json --variant strip"),
     (template.sheet, "profiletool sheet --paper letter --out sheet.pdf"),
 ):

@@ -32,7 +32,10 @@ from profiletool.verdict.summary import built_text, off_text
 def report_html(dossier: Dossier) -> bytes:
     """Write the report: the same dossier gives the same bytes."""
     name = _name(dossier)
-    script, style = (_asset(f"report.{kind}") for kind in ("js", "css"))
+    style, states, motion = (_asset(name) for name in ("report.css", "film.js", "report.js"))
+    script = Markup(
+        states.replace("\nexport ", "\n") + "\n" + motion
+    )  # a page from disk: no modules
     film = _film(dossier)
     head = tag(
         "head",
