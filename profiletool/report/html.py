@@ -33,9 +33,8 @@ def report_html(dossier: Dossier) -> bytes:
     """Write the report: the same dossier gives the same bytes."""
     name = _name(dossier)
     style, states, motion = (_asset(name) for name in ("report.css", "film.js", "report.js"))
-    script = Markup(
-        states.replace("\nexport ", "\n") + "\n" + motion
-    )  # a page from disk: no modules
+    # A page from disk has no modules.
+    script = Markup(states.replace("\nexport ", "\n") + motion)
     film = _film(dossier)
     head = tag(
         "head",

@@ -22,7 +22,7 @@ from starlette.routing import Route
 
 from profiletool.errors import ProfiletoolError, UsageError
 from profiletool.records.edit import Edit, edit_of
-from profiletool.studio.commands import commands, export, files_of_version
+from profiletool.studio.commands import commands, export, files_of_version, toml_of
 from profiletool.studio.form import fields, in_words, to_toml
 from profiletool.studio.guard import Guard
 from profiletool.studio.session import Session
@@ -30,6 +30,11 @@ from profiletool.studio.session import Session
 _MOST_JSON, _MOST_PICTURE = 100_000, 50_000_000  # bytes, the latter as the readers take
 _ASSETS = {"report.css": "profiletool.report", "film.js": "profiletool.report"}
 _MOST_EDITS = 200
+# The report has a script and styles of its own; it may do nothing here.
+_OF_FILES = (
+    "sandbox allow-scripts allow-popups; default-src 'none'; script-src 'unsafe-inline'; "
+    "style-src 'unsafe-inline'; img-src data:"
+)
 
 
 def app_of(session: Session, token: str) -> Guard:
@@ -41,6 +46,7 @@ def app_of(session: Session, token: str) -> Guard:
         Route("/state", server.state),
         Route("/form", server.form),
         Route("/view/{number:int}", server.view),
+        Route("/near", server.near),
         Route("/picture/{name}", server.picture),
         Route("/files/{number:int}/{name}", server.file),
         Route("/zip/{number:int}", server.zip),
@@ -76,7 +82,7 @@ class _Server:
             "folder": str(session.folder),
             "picture": state.picture,
             "values": state.values,
-            "toml": to_toml(state.values),
+            "toml": to_toml(state.values) if current is None else toml_of(session, current),
             "said": session.said,
             "versions": [asdict(version) for version in state.versions],
             "current": state.current,
@@ -86,7 +92,8 @@ class _Server:
         if running is not None:
             tree["running"] = {
                 "kind": running.job.kind, "share": running.share, "line": running.line,
-                "seconds": time.monotonic() - running.began,
+                "seconds": time.monotonic() - running.began, "ticket": running.ticket,
+                "near": running.near is not None,
             }  # fmt: skip
         if request.query_params.get("found") != str(session.found_revision):
             tree["found"] = session.found
@@ -97,12 +104,20 @@ class _Server:
         place = self._session.place(request.path_params["number"])
         return FileResponse(place.with_name(f"{place.name}.json"), media_type="application/json")
 
+    def near(self, request: Request) -> Response:
+        running = self._session.running
+        if running is None or running.near is None:
+            raise HTTPException(404, "nothing yet")
+        return JSONResponse(running.near)
+
     def picture(self, request: Request) -> Response:
         return self._kept(self._session.folder, request.path_params["name"], ".jpg")
 
     def file(self, request: Request) -> Response:
         place = self._session.place(request.path_params["number"])
-        return self._kept(place, request.path_params["name"])
+        answer = self._kept(place, request.path_params["name"])
+        answer.headers["Content-Security-Policy"] = _OF_FILES
+        return answer
 
     def _kept(self, folder: Any, name: str, ending: str = "") -> Response:
         """Give a file that lies in a folder itself: a name leads nowhere else."""

@@ -31,6 +31,14 @@ def commands(session: Session, version: Version) -> list[str]:
     return lines
 
 
+def toml_of(session: Session, version: Version) -> str:
+    """Give the options that a version was designed with, as the file beside it has them."""
+    first = session.line_of(version)[0]
+    if first.kind != "design":
+        return ""
+    return (session.folder / f"{first.number}.toml").read_text("utf-8")
+
+
 def files_of_version(session: Session, version: Version) -> dict[str, bytes]:
     """Read all files of a version."""
     place = session.place(version.number)

@@ -99,7 +99,7 @@ def _value(row: Option, value: Any) -> Any:
             raise UsageError(f"{said}: it is a whole number")
         return int(number) if kind.type is int else number
     if kind.type is tuple:
-        if not isinstance(value, list) or len(value) != kind.count:
+        if not isinstance(value, list | tuple) or len(value) != kind.count:
             raise UsageError(f"{said}: it has {kind.count} numbers")
         return tuple(_number(part, said) for part in value)
     if not isinstance(value, str) or len(value) > _LONGEST or not value.isprintable():

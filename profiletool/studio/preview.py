@@ -1,22 +1,28 @@
-"""The tube while a joint is dragged: by the joint response, in a few milliseconds."""
+"""The tube while a joint is dragged, by the joint response, and once it is let go, by FE."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache, reduce
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from profiletool.files.design_json import load_design
 from profiletool.files.formula import named_formula
 from profiletool.joints.again import edited, plan_again
+from profiletool.joints.correction.correct import CannotBend
 from profiletool.joints.misfit import misfit_to
 from profiletool.records.design import Design
 from profiletool.records.edit import Edit
+from profiletool.records.frames import Shape
 from profiletool.records.making import request_again
 from profiletool.records.profile import Profile
 from profiletool.report.film import still_of
 from profiletool.report.view import View, film_view, joints_view
 from profiletool.subject.recall import profile_of
+from profiletool.verify.near import bent_near
 
 _EVERY = 10  # of the profile's points, 0.1 mm apart, counts for the misfit that is shown
 
@@ -27,6 +33,42 @@ def _base(file: Path, stamp: int) -> tuple[Design, Profile]:
     del stamp
     design = load_design(file)
     return design, profile_of(design, file)
+
+
+def changed(file: Path, edits: Sequence[Edit]) -> tuple[Design, Profile]:
+    """Read a design with its profile, and change it.
+
+    Raises
+    ------
+    UsageError, UnreadableInput
+    """
+    known, profile = _base(file, file.stat().st_mtime_ns)
+    return reduce(edited, edits, known), profile
+
+
+def by_fe(file: Path, edits: Sequence[Edit], known: Any) -> tuple[View, Any] | None:
+    """Bend a changed design by finite elements, from the state of a similar one where it is known.
+
+    None where that does not get there.
+    """
+    design, profile = changed(file, edits)
+    try:
+        shape, solution = bent_near(design, profile, known)
+    except CannotBend:
+        return None
+    view = joints_view(design)
+    for row, theta in zip(view["joints"], np.degrees(solution.states[-1].theta), strict=True):
+        row["fe"] = float(theta)
+    return {**view, **_bent(design, profile, shape), "by": "fe"}, solution
+
+
+def _bent(design: Design, profile: Profile, shape: Shape) -> View:
+    off = misfit_to(shape, profile.points[::_EVERY])
+    return {
+        "bar": design.pressure_bar,
+        "film": film_view(still_of(shape, design)),
+        "off": {"rms": off.rms_mm, "max": off.max_mm},
+    }
 
 
 def preview(file: Path, edits: Sequence[Edit]) -> View:
@@ -44,21 +86,13 @@ def preview(file: Path, edits: Sequence[Edit]) -> View:
         No actuator has such numbers.
     UnreadableInput
     """
-    known, profile = _base(file, file.stat().st_mtime_ns)
-    design = reduce(edited, edits, known)
+    design, profile = changed(file, edits)
     asked = request_again(design, profile, refine=False)
     formula = named_formula(design.formula.name)
     plan = plan_again(design, asked, profile, formula, lambda line: None)
     joints = plan.layout.joints
-    off = misfit_to(plan.bent, profile.points[::_EVERY])
     view = joints_view(design)
     for row, joint in zip(view["joints"], joints, strict=True):
         theta = joint.theta_response_deg or joint.theta_formula_deg
         row["response"] = joint.signed(theta)
-    return {
-        **view,
-        "by": plan.by,
-        "bar": design.pressure_bar,
-        "film": film_view(still_of(plan.bent, design)),
-        "off": {"rms": off.rms_mm, "max": off.max_mm},
-    }
+    return {**view, **_bent(design, profile, plan.bent), "by": plan.by}

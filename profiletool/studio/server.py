@@ -8,6 +8,7 @@ import socket
 import threading
 import webbrowser
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 
 import uvicorn
@@ -17,6 +18,7 @@ from profiletool.studio.app import app_of
 from profiletool.studio.session import Session
 
 _LOOPBACK = "127.0.0.1"
+_SLOW = "profiletool.studio.preview"  # to load: it shall be there when the first joint is dragged
 _QUIET_SECONDS = 2  # for open connections to end
 
 
@@ -53,6 +55,7 @@ def serve(
         if "SSH_CONNECTION" in os.environ:
             say(f"from your own machine: ssh -L {port}:{_LOOPBACK}:{port} HOST, then open the same")
         say("Ctrl-C ends it; nothing is lost")
+        threading.Thread(target=import_module, args=(_SLOW,), daemon=True).start()
         config = uvicorn.Config(
             app_of(session, token), log_level="critical", access_log=False, lifespan="off",
             ws="none", timeout_graceful_shutdown=_QUIET_SECONDS, server_header=False,

@@ -27,7 +27,7 @@ _MADE = re.compile(r"session\.json|\d+\..*|(photo|front)_.*|mask_\d+\.png", re.I
 
 @dataclass(frozen=True)
 class Running:
-    """The job at work, how far it is, and what it makes."""
+    """The job at work, how far it is, what it makes, and what it found first."""
 
     ticket: int
     job: Job
@@ -35,6 +35,7 @@ class Running:
     began: float
     share: float = 0.0
     line: str = ""
+    near: Any = None
 
 
 class Session:
@@ -80,7 +81,7 @@ class Session:
             raise UnreadableInput(f"{file}: {error.strerror}; check the name") from error
 
     def put(self, name: str, data: bytes) -> None:
-        """Take a picture or drawing; the session goes on with it.
+        """Take a picture or drawing; where it is the one that is there, all stays as it is.
 
         Raises
         ------
@@ -88,8 +89,12 @@ class Session:
         """
         if not _NAME.fullmatch(name) or _MADE.fullmatch(name):
             raise UsageError("a picture's name has letters, digits, spaces and . - _ + ( ) alone")
+        place = self.folder / name
         with self._lock:
-            write_file(self.folder / name, data, force=True)
+            if name == self.state.picture and place.is_file() and place.read_bytes() == data:
+                self.find()
+                return
+            write_file(place, data, force=True)
             for prefix in ("photo", "front"):
                 (self.folder / f"{prefix}_{name}.jpg").unlink(missing_ok=True)
             kept = {k: v for k, v in self.state.values.items() if k not in (*_LOOK, *_SCALE)}
@@ -165,6 +170,8 @@ class Session:
         if file not in beside:
             raise UnreadableInput(f"{file}: no such file; check the name")
         with self._lock:
+            if self._is_given(file):
+                return
             number = self._next()
             given = f"{number}.given"
             files = {"design.json": file.read_bytes()}
@@ -173,6 +180,13 @@ class Session:
             self._keep(picture=None, values={}, current=None)
             job = Job("report", number, f"{given}/design.json", {})
             self._begin(job, Version(number, None, "report", (f"{given}/design.json",)))
+
+    def _is_given(self, file: Path) -> bool:
+        """Whether the current version began with this very design."""
+        if self.state.current is None:
+            return False
+        given = self.folder / f"{self.line_of(self.version())[0].number}.given" / "design.json"
+        return given.is_file() and given.read_bytes() == file.read_bytes()
 
     def cancel(self) -> None:
         """End the job that runs; what was made before stays."""
@@ -233,6 +247,8 @@ class Session:
                 return
             if what == "share":
                 self.running = replace(running, share=float(value))
+            elif what == "near":
+                self.running = replace(running, near=value)
             elif what == "line":
                 self.running = replace(running, line=value)
             else:

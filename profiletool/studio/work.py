@@ -12,9 +12,8 @@ import numpy as np
 from PIL import Image
 
 from profiletool import api
-from profiletool.errors import NoScale, ProfiletoolError, UnreadableInput, Unsure
+from profiletool.errors import NoScale, ProfiletoolError, Unsure
 from profiletool.files.write import write_folder
-from profiletool.image.load import load_picture
 from profiletool.records.edit import Edit, edit_of
 from profiletool.records.picture import Picture
 from profiletool.records.request import Request, ScaleRequest
@@ -22,8 +21,9 @@ from profiletool.report.outputs import files_of
 from profiletool.report.view import View, design_view
 from profiletool.studio.form import in_words
 from profiletool.studio.job import Job
+from profiletool.studio.preview import by_fe
 from profiletool.studio.view import outline_of, save_picture, subject_view
-from profiletool.subject.find import Subject
+from profiletool.subject.find import Subject, source_of
 
 _GUESSED_MM = 150.0  # of a picture's longer side, to draw an object whose size is not told yet
 
@@ -32,30 +32,57 @@ Say = Callable[[str], None]
 Progress = Callable[[float], None]
 
 
-def done(job: Job, say: Say, progress: Progress) -> View:
-    """Do a job in the current folder, which is the work folder; give what the page shows.
+class Bench:
+    """What does jobs, in the current folder; it keeps the last solution of finite elements."""
 
-    Raises
-    ------
-    ProfiletoolError
-    """
-    if job.kind == "find":
-        return _found(job, say)
-    if job.kind == "design":
-        result = api.design(_request(job), say=say, progress=progress)
-        view = {**design_view(result), "subject": _subject(job.file, result.subject)}
-    else:
-        edits: list[Edit] = [edit_of(text) for text in job.edits]
-        if job.pressure_bar is not None and job.kind == "edit":
-            edits.append(Edit(pressure_bar=job.pressure_bar))
-        result = api.design_again(
-            job.file, edits=edits, refine=job.kind == "refine", say=say, progress=progress
-        )
-        view = design_view(result)
-    view["notes"] = [in_words(text) for text in view["notes"]]
-    say("the files")
-    write_folder(Path(str(job.number)), files_of(result), force=True)
-    return view
+    def __init__(self) -> None:
+        self._known: Any = None
+
+    def done(self, job: Job, say: Say, progress: Progress, near: Callable[[View], None]) -> View:
+        """Do a job; give what the page shows.
+
+        Parameters
+        ----------
+        job : Job
+        say, progress : callable
+            Take a line of progress, and the share that is done.
+        near : callable
+            Takes what finite elements say first of a change by hand.
+
+        Raises
+        ------
+        ProfiletoolError
+        """
+        if job.kind == "find":
+            return _found(job, say)
+        if job.kind == "design":
+            result = api.design(_request(job), say=say, progress=progress)
+            view = {**design_view(result), "subject": _subject(job.file, result.subject)}
+        else:
+            edits = _edits(job)
+            if edits:
+                self._near(Path(job.file), edits, near)
+            result = api.design_again(
+                job.file, edits=edits, refine=job.kind == "refine", say=say, progress=progress
+            )
+            view = design_view(result)
+        if result.check is not None and result.check.run is not None:
+            self._known = result.check.run.solution
+        view["notes"] = [in_words(text) for text in view["notes"]]
+        say("the files")
+        write_folder(Path(str(job.number)), files_of(result), force=True)
+        return view
+
+    def _near(self, file: Path, edits: list[Edit], near: Callable[[View], None]) -> None:
+        found = by_fe(file, edits, self._known)
+        if found is not None:
+            view, self._known = found
+            near(view)
+
+
+def _edits(job: Job) -> list[Edit]:
+    edits = [edit_of(text) for text in job.edits]
+    return edits if job.pressure_bar is None else [*edits, Edit(pressure_bar=job.pressure_bar)]
 
 
 def _request(job: Job) -> Request:
@@ -64,13 +91,14 @@ def _request(job: Job) -> Request:
 
 def _subject(file: str, subject: Subject) -> View:
     """Show the object of a file, with the picture that it was taken from."""
-    return subject_view(subject, None if subject.picture is None else _shown(file, subject.picture))
+    picture = subject.picture
+    return subject_view(subject, None if picture is None else _shown(file, picture))
 
 
 def _shown(file: str, picture: Picture) -> str:
     """Save the picture that a subject was taken from: a photograph, or its frontal view."""
-    photo, rgb = load_picture(Path(file)).rgb, picture.rgb
-    same = photo.shape == rgb.shape and bool((photo == rgb).all())
+    photo, rgb = source_of(Request(Path(file))), picture.rgb
+    same = isinstance(photo, Picture) and np.array_equal(photo.rgb, rgb)
     name = f"{'photo' if same else 'front'}_{Path(file).name}.jpg"
     save_picture(rgb, Path(name))
     return name
@@ -82,11 +110,13 @@ def _shown(file: str, picture: Picture) -> str:
 def _found(job: Job, say: Say) -> View:
     request = replace(_request(job), start_pct=0.0, end_pct=100.0)
     view: View = {"photo": None, "error": None, "candidates": [], "drawing": True}
-    with contextlib.suppress(UnreadableInput):  # a drawing, or what the finder will tell
-        rgb = load_picture(request.file).rgb
-        name = f"photo_{request.file.name}.jpg"
-        save_picture(rgb, Path(name))
-        view |= {"photo": {"file": name, "px": [rgb.shape[1], rgb.shape[0]]}, "drawing": False}
+    with contextlib.suppress(ProfiletoolError):  # the finder will tell
+        source = source_of(request)
+        if isinstance(source, Picture):
+            name = f"photo_{request.file.name}.jpg"
+            save_picture(source.rgb, Path(name))
+            height, width = source.rgb.shape[:2]
+            view |= {"photo": {"file": name, "px": [width, height]}, "drawing": False}
     told: list[str] = []
 
     def hear(line: str) -> None:

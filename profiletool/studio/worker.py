@@ -27,8 +27,8 @@ class Worker:
     folder : Path
         The work folder.
     hear : callable
-        Takes (ticket, what, value): "line" with a text, "share" with a number, "done" with a view,
-        "failed" with a text. It is called in a thread of its own.
+        Takes (ticket, what, value): "line" with a text, "share" with a number, "near" and "done"
+        with a view, "failed" with a text. It is called in a thread of its own.
     """
 
     def __init__(self, folder: Path, hear: Hear) -> None:
@@ -106,8 +106,9 @@ def _work(folder: str, line: Connection) -> None:
     jobs: queue.Queue[tuple[int, Any]] = queue.Queue()
     threading.Thread(target=_take, args=(line, jobs), daemon=True).start()
     from profiletool.errors import ProfiletoolError
-    from profiletool.studio.work import done
+    from profiletool.studio.work import Bench
 
+    bench = Bench()
     while True:
         ticket, job = jobs.get()
 
@@ -115,8 +116,13 @@ def _work(folder: str, line: Connection) -> None:
             line.send((ticket, what, value))
 
         try:
-            tell("done", done(job, lambda text: tell("line", in_words(text)),
-                              lambda share: tell("share", share)))  # fmt: skip
+            view = bench.done(
+                job,
+                lambda text: tell("line", in_words(text)),
+                lambda share: tell("share", share),
+                lambda early: tell("near", early),
+            )
+            tell("done", view)
         except ProfiletoolError as error:
             tell("failed", in_words(str(error)))
         except Exception as error:  # a fault of ours shall not end the studio

@@ -18,11 +18,22 @@ let pending = new Pending();
 let sent = new Pending();
 let bent = null; // the tube with the changes, by the joint response
 let chosen = 0;
+let told = null; // the job that finite elements said something first of
+let responses = []; // angles by the joint response, of the change
 let began = null; // the change of the joint when a drag began
 let started = null; // when the tube began to inflate, where it does
 
 export const name = () => view?.name ?? null;
 export const moves = () => Boolean(view && view.film.lines.length > 1 && !bent);
+
+// Show what finite elements say first of the change that they are at.
+export async function near(state) {
+  const { ticket } = state.running;
+  if (told === ticket) return;
+  told = ticket;
+  const early = await get("near");
+  if (JSON.stringify(sent.edits) === JSON.stringify(pending.edits) && sent.bar === pending.bar) bent = early;
+}
 
 export function forget() { pending.clear(); sent.clear(); bent = null; }
 
@@ -72,7 +83,7 @@ export function show(state) {
   const off = bent?.off ?? view.off;
   const told = bent ? "Changed by hand" : !view.verified ? "NOT VERIFIED" : view.feasible ? "Verified by finite elements" : "INFEASIBLE";
   by("verdict").className = `verdict ${view.verified && view.feasible ? "good" : "bad"}`;
-  const lines = [`${off.rms.toFixed(2)} mm RMS, ${off.max.toFixed(2)} mm at most off the profile` + (bent ? `, by the ${bent.by}` : "")];
+  const lines = [`${off.rms.toFixed(2)} mm RMS, ${off.max.toFixed(2)} mm at most off the profile` + (bent ? `, by ${bent.by === "fe" ? "finite elements" : `the ${bent.by}`}` : "")];
   if (!bent && view.built) lines.push(view.built);
   by("verdict").replaceChildren(said("word", told), ...lines.map((text) => said("", text)));
   by("notes").replaceChildren(...view.notes.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
@@ -111,9 +122,9 @@ function numbers() {
   }));
   const angle = (value) => (value === null || value === undefined ? "–" : signed(value));
   by("table").replaceChildren(...rows.map((row, k) => {
-    const response = bent ? bent.joints[k].response : row.response;
+    const response = bent ? bent.joints[k].response ?? responses[k] : row.response;
     const cells = [row.centre.toFixed(1), row.openF, (row.alpha / view.thread).toFixed(1), angle(row.target),
-      angle(response), bent ? "–" : angle(row.fe)];
+      angle(response), angle(bent ? (bent.by === "fe" ? bent.joints[k].fe : null) : row.fe)];
     const line = document.createElement("tr");
     line.append(Object.assign(document.createElement("th"), { scope: "row", textContent: row.number }),
       ...cells.map((text) => Object.assign(document.createElement("td"), { textContent: text })));
@@ -136,6 +147,7 @@ const bend = latest(async () => {
   try {
     const answer = await post("bend", { version: base, edits: asked.edits, pressure_bar: asked.bar });
     if (base === number && pending.any) bent = answer;
+    responses = answer.joints.map((joint) => joint.response);
     page.refused("");
   } catch (error) {
     page.refused(error.message);

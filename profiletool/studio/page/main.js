@@ -32,6 +32,7 @@ async function poll() {
       await joints.open(state);
       if (tab === "object" && !first) choose("joints");
     }
+    if (state.running?.near) await joints.near(state);
     if (first && state.current !== null) choose("joints");
     if (changed || state.running) show();
   } catch (error) {

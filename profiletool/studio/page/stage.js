@@ -128,7 +128,15 @@ function set_slider(element, key, now, least, most, text) {
   for (const [name, value] of Object.entries(told)) element.setAttribute(`aria-${name}`, value);
 }
 
-const label = (text, x, y) => make("text", { class: "label", x, y }, text);
+// A text of 12 CSS pixels about a place, but inside the drawing.
+function label(text, x, y) {
+  const { x: left, width, y: top, height } = svg.viewBox.baseVal;
+  const half = 0.25 * em * text.length;
+  return make("text", {
+    class: "label", x: Math.min(Math.max(x, left + half), left + width - half),
+    y: Math.min(Math.max(y, top + em), top + height - 0.3 * em),
+  }, text);
+}
 
 // --- the tube --------------------------------------------------------------------------------
 
@@ -174,11 +182,9 @@ export function joints({ points, windows }, view, chosen, act) {
   view.joints.forEach((joint, k) => {
     const [x, y] = middle(points, windows[k][1]);
     const place = grip(k, "place", `Joint ${joint.number}, place along the tube`);
-    place.classList.add("badge");
-    place.classList.toggle("chosen", k === chosen);
-    place.append(
+    place.append(make("g", { class: k === chosen ? "badge chosen" : "badge" },
       make("circle", { r: radius }),
-      make("text", { dy: "0.36em", style: `font-size: ${1.25 * radius}px` }, `${joint.number}`));
+      make("text", { dy: "0.36em", style: `font-size: ${1.25 * radius}px` }, `${joint.number}`)));
     place.setAttribute("transform", `translate(${x} ${y})`);
     set_slider(place, `joint-${k}`, joint.centre.toFixed(1), 0, view.tube.length, `${joint.centre.toFixed(1)} mm`);
     place.addEventListener("focus", () => act.choose(k));
@@ -196,7 +202,8 @@ export function joints({ points, windows }, view, chosen, act) {
       const [ux, uy] = [fx - x, fy - y].map((v) => v / Math.hypot(fx - x, fy - y));
       const threads = `${Math.round(10 * joint.alpha / view.thread) / 10}`;
       const said = `${joint.centre.toFixed(1)} mm, cut ${joint.openF} mm, ${threads} threads`;
-      parts.push(label(said, fx + 2.5 * em * ux, fy + 1.6 * em * uy + 0.3 * em));
+      const beside = Math.abs(ux) > 0.3 ? Math.sign(ux) * (em + 0.25 * em * said.length) : 0;
+      parts.push(label(said, fx + beside, fy + 1.6 * em * uy + 0.3 * em));
     }
     parts.push(place);
   });
