@@ -8,8 +8,8 @@ from pathlib import Path
 
 from profiletool.errors import UsageError
 from profiletool.files.write import check_free, write_folder
+from profiletool.studio.job import Version
 from profiletool.studio.session import Session
-from profiletool.studio.state import Version
 
 _FOLDER = re.compile(r"[^\W_][\w .+-]{0,99}")
 

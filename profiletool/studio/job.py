@@ -1,4 +1,4 @@
-"""Jobs as records: what the worker is asked to do."""
+"""Jobs as records: what the worker is asked to do, how far it is, and what it makes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class Job:
 
     Attributes
     ----------
-    kind : {"find", "design", "edit", "refine", "report"}
+    kind : {"find", "design", "edit", "refine", "report", "near"}
     number : int
         Of the picture, or of the version that is to be made.
     file : str
@@ -32,3 +32,41 @@ class Job:
     values: Mapping[str, Any]
     edits: tuple[str, ...] = ()
     pressure_bar: float | None = None
+
+
+@dataclass(frozen=True)
+class Version:
+    """A design that was made here.
+
+    Attributes
+    ----------
+    number : int
+        Its folder has this name, and its view and TOML are beside it.
+    base : int or None
+        The version that it was changed from.
+    kind : {"design", "edit", "refine", "report"}
+    words : tuple of str
+        What the command line takes for it, beside the input and --out.
+    """
+
+    number: int
+    base: int | None
+    kind: str
+    words: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Running:
+    """The job at work, how far it is, and what it makes.
+
+    ``early`` is the ticket of the quick run beside it, ``near`` what that found.
+    """
+
+    ticket: int
+    job: Job
+    makes: Version | None
+    began: float
+    share: float = 0.0
+    line: str = ""
+    early: int = 0
+    near: Any = None

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from profiletool.errors import NotVerified
 from profiletool.files.design_json import load_design
 from profiletool.files.formula import named_formula
 from profiletool.joints.again import edited, plan_again
@@ -46,16 +47,19 @@ def changed(file: Path, edits: Sequence[Edit]) -> tuple[Design, Profile]:
     return reduce(edited, edits, known), profile
 
 
-def by_fe(file: Path, edits: Sequence[Edit], known: Any) -> tuple[View, Any] | None:
+def by_fe(file: Path, edits: Sequence[Edit], known: Any) -> tuple[View, Any]:
     """Bend a changed design by finite elements, from the state of a similar one where it is known.
 
-    None where that does not get there.
+    Raises
+    ------
+    NotVerified
+        They do not get there.
     """
     design, profile = changed(file, edits)
     try:
         shape, solution = bent_near(design, profile, known)
-    except CannotBend:
-        return None
+    except CannotBend as error:
+        raise NotVerified(str(error)) from error
     view = joints_view(design)
     for row, theta in zip(view["joints"], np.degrees(solution.states[-1].theta), strict=True):
         row["fe"] = float(theta)

@@ -7,35 +7,24 @@ import re
 import threading
 import time
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 from profiletool.errors import ProfiletoolError, UnreadableInput, UsageError
+from profiletool.files.read import check_file
 from profiletool.files.write import write_file, write_folder
 from profiletool.records.edit import edit_of
 from profiletool.studio.form import checked, to_toml
-from profiletool.studio.job import Job
-from profiletool.studio.state import KEPT, Version, as_json, restored
+from profiletool.studio.job import Job, Running, Version
+from profiletool.studio.state import KEPT, as_json, restored
 from profiletool.studio.worker import Worker
 
 _LOOK = ("box", "point", "mask")  # options that are about one picture
 _SCALE = ("height_mm", "width_mm", "mm_per_px", "marker_mm")
+_MOST_BYTES = 50_000_000
 _NAME = re.compile(r"[^\W_][\w .,+()-]{0,99}")
 _MADE = re.compile(r"session\.json|\d+\..*|(photo|front)_.*|mask_\d+\.png", re.IGNORECASE)
-
-
-@dataclass(frozen=True)
-class Running:
-    """The job at work, how far it is, what it makes, and what it found first."""
-
-    ticket: int
-    job: Job
-    makes: Version | None
-    began: float
-    share: float = 0.0
-    line: str = ""
-    near: Any = None
 
 
 class Session:
@@ -57,13 +46,16 @@ class Session:
         self.found_revision = 0
         self.said = ""
         self._worker = Worker(folder, self._hear)
+        self._quick = Worker(folder, self._hear_early, patient=True)
         self.find()
+        self._warm()
 
     def __enter__(self) -> Session:
         return self
 
     def __exit__(self, *error: object) -> None:
         self._worker.close()
+        self._quick.close()
 
     def open(self, file: Path) -> None:
         """Take a picture, a drawing or a design.json from the disk.
@@ -72,13 +64,15 @@ class Session:
         ------
         ProfiletoolError
         """
-        if file.is_dir() or file.suffix.lower() == ".json":
-            self._open_design(file / "design.json" if file.is_dir() else file)
-            return
+        file = file / "design.json" if file.is_dir() else file
         try:
+            check_file(file, _MOST_BYTES, "a picture or a design")
+        except UnreadableInput as error:
+            raise UnreadableInput(f"{file}: {error}") from None
+        if file.suffix.lower() == ".json":
+            self._open_design(file)
+        else:
             self.put(file.name, file.read_bytes())
-        except OSError as error:
-            raise UnreadableInput(f"{file}: {error.strerror}; check the name") from error
 
     def put(self, name: str, data: bytes) -> None:
         """Take a picture or drawing; where it is the one that is there, all stays as it is.
@@ -164,11 +158,12 @@ class Session:
             base, number = self.version(number), self._next()
             job = Job(kind, number, f"{base.number}/design.json", {}, **asked)
             self._begin(job, Version(number, base.number, kind, words))
+            if kind == "edit" and self.running is not None:
+                early = self._quick.begin(replace(job, kind="near"))
+                self.running = replace(self.running, early=early)
 
     def _open_design(self, file: Path) -> None:
         beside = [path for path in (file, file.with_name("shape.csv")) if path.is_file()]
-        if file not in beside:
-            raise UnreadableInput(f"{file}: no such file; check the name")
         with self._lock:
             if self._is_given(file):
                 return
@@ -247,8 +242,6 @@ class Session:
                 return
             if what == "share":
                 self.running = replace(running, share=float(value))
-            elif what == "near":
-                self.running = replace(running, near=value)
             elif what == "line":
                 self.running = replace(running, line=value)
             else:
@@ -257,23 +250,33 @@ class Session:
                 self._changed("" if what == "done" else value)
             self.revision += 1
 
+    def _hear_early(self, ticket: int, what: str, value: Any) -> None:
+        with self._lock:
+            if what == "done" and self.running is not None and self.running.early == ticket:
+                self.running = replace(self.running, near=value)
+                self.revision += 1
+
+    def _warm(self) -> None:
+        """Let the quick runs have a state to begin from."""
+        if self.state.current is not None:
+            self._quick.begin(Job("near", 0, f"{self.state.current}/design.json", {}))
+
     def _ended(self, running: Running, view: Any) -> None:
         version = running.makes
         if running.job.kind == "find":
-            self.found = view
-            self.found_revision += 1
+            self.found, self.found_revision = view, self.found_revision + 1
         if version is None or view is None:
             return
         if version.base is not None:
-            view |= {"subject": json.loads(self._view(version.base)).get("subject")}
+            before = (self.folder / f"{version.base}.json").read_bytes()
+            view |= {"subject": json.loads(before).get("subject")}
         try:
             write_file(self.folder / f"{version.number}.json", as_json(view), force=True)
             self._keep(versions=(*self.state.versions, version), current=version.number)
+            if version.kind != "edit":
+                self._warm()
         except ProfiletoolError as error:
             self.said = str(error)
-
-    def _view(self, number: int) -> bytes:
-        return (self.folder / f"{number}.json").read_bytes()
 
     def _keep(self, **changes: Any) -> None:
         self.state = replace(self.state, **changes)

@@ -9,29 +9,9 @@ from typing import Any
 
 from profiletool.errors import OutputError, ProfiletoolError
 from profiletool.studio.form import checked
+from profiletool.studio.job import Version
 
 KEPT = "session.json"
-
-
-@dataclass(frozen=True)
-class Version:
-    """A design that was made here.
-
-    Attributes
-    ----------
-    number : int
-        Its folder has this name, and its view and TOML are beside it.
-    base : int or None
-        The version that it was changed from.
-    kind : {"design", "edit", "refine", "report"}
-    words : tuple of str
-        What the command line takes for it, beside the input and --out.
-    """
-
-    number: int
-    base: int | None
-    kind: str
-    words: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -38,7 +38,7 @@ class Bench:
     def __init__(self) -> None:
         self._known: Any = None
 
-    def done(self, job: Job, say: Say, progress: Progress, near: Callable[[View], None]) -> View:
+    def done(self, job: Job, say: Say, progress: Progress) -> View:
         """Do a job; give what the page shows.
 
         Parameters
@@ -46,8 +46,6 @@ class Bench:
         job : Job
         say, progress : callable
             Take a line of progress, and the share that is done.
-        near : callable
-            Takes what finite elements say first of a change by hand.
 
         Raises
         ------
@@ -55,29 +53,26 @@ class Bench:
         """
         if job.kind == "find":
             return _found(job, say)
+        if job.kind == "near":
+            return self._near(job)
         if job.kind == "design":
             result = api.design(_request(job), say=say, progress=progress)
             view = {**design_view(result), "subject": _subject(job.file, result.subject)}
         else:
-            edits = _edits(job)
-            if edits:
-                self._near(Path(job.file), edits, near)
+            refine = job.kind == "refine"
             result = api.design_again(
-                job.file, edits=edits, refine=job.kind == "refine", say=say, progress=progress
+                job.file, edits=_edits(job), refine=refine, say=say, progress=progress
             )
             view = design_view(result)
-        if result.check is not None and result.check.run is not None:
-            self._known = result.check.run.solution
         view["notes"] = [in_words(text) for text in view["notes"]]
         say("the files")
         write_folder(Path(str(job.number)), files_of(result), force=True)
         return view
 
-    def _near(self, file: Path, edits: list[Edit], near: Callable[[View], None]) -> None:
-        found = by_fe(file, edits, self._known)
-        if found is not None:
-            view, self._known = found
-            near(view)
+    def _near(self, job: Job) -> View:
+        """Bend a changed design from the last one's state, to show it soon; nothing is verified."""
+        view, self._known = by_fe(Path(job.file), _edits(job), self._known)
+        return view
 
 
 def _edits(job: Job) -> list[Edit]:

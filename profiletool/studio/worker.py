@@ -27,12 +27,15 @@ class Worker:
     folder : Path
         The work folder.
     hear : callable
-        Takes (ticket, what, value): "line" with a text, "share" with a number, "near" and "done"
-        with a view, "failed" with a text. It is called in a thread of its own.
+        Takes (ticket, what, value): "line" with a text, "share" with a number, "done" with a view,
+        "failed" with a text. It is called in a thread of its own.
+    patient : bool
+        Whether a job that runs is done to its end, unheard, when others come; then the last one
+        of those is done.
     """
 
-    def __init__(self, folder: Path, hear: Hear) -> None:
-        self._folder, self._hear = folder, hear
+    def __init__(self, folder: Path, hear: Hear, *, patient: bool = False) -> None:
+        self._folder, self._hear, self._patient = folder, hear, patient
         self._ticket = 0
         self._busy = False
         self._lock = threading.Lock()
@@ -41,7 +44,7 @@ class Worker:
     def begin(self, job: Any) -> int:
         """Begin a job, and give its ticket; one that runs is ended before."""
         with self._lock:
-            if self._busy:
+            if self._busy and not self._patient:
                 self._restart()
             self._ticket += 1
             self._busy = True
@@ -111,6 +114,8 @@ def _work(folder: str, line: Connection) -> None:
     bench = Bench()
     while True:
         ticket, job = jobs.get()
+        while not jobs.empty():
+            ticket, job = jobs.get()
 
         def tell(what: str, value: Any, ticket: int = ticket) -> None:
             line.send((ticket, what, value))
@@ -120,7 +125,6 @@ def _work(folder: str, line: Connection) -> None:
                 job,
                 lambda text: tell("line", in_words(text)),
                 lambda share: tell("share", share),
-                lambda early: tell("near", early),
             )
             tell("done", view)
         except ProfiletoolError as error:

@@ -49,7 +49,6 @@ class Worker:
                 self.jobs[-1],
                 lambda line: self.hear(ticket, "line", line),
                 lambda share: self.hear(ticket, "share", share),
-                lambda early: self.hear(ticket, "near", early),
             )
         except ProfiletoolError as error:
             self.hear(ticket, "failed", str(error))
@@ -114,7 +113,9 @@ def studio(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Studio]:
 def opened(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Studio]:
     made: list[Worker] = []
 
-    def worker(place: Path, hear: Callable[[int, str, Any], None]) -> Worker:
+    def worker(
+        place: Path, hear: Callable[[int, str, Any], None], *, patient: bool = False
+    ) -> Worker:
         made.append(Worker(place, hear))
         return made[-1]
 

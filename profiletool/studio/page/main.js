@@ -134,7 +134,7 @@ function draw() {
 
 function stretched(k, value, done) {
   const ends = draft ?? [state.values.start_pct ?? 0, state.values.end_pct ?? 100];
-  draft = value === null || Number.isNaN(value) ? ends : ends.map((old, i) => (i === k ? value : old));
+  draft = value === null ? ends : ends.map((old, i) => (i === k ? value : old));
   by("object").querySelector(`[data-field="${k ? "end_pct" : "start_pct"}"]`).value = draft[k];
   if (done) {
     draft = null;

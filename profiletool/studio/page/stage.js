@@ -110,7 +110,7 @@ export function stretch(side, ends, changed) {
     const set = (value, done) => changed(k, clamped(Math.round(2 * value) / 2), done);
     const grip = handle(svg, HANDLE * em, k ? "To" : "From", {
       move: (place) => set(100 * nearest(side, place) / total, false),
-      end: () => set(null, true),
+      end: () => changed(k, null, true),
       step: (by) => set(pct + by, true),
     });
     const [x, y] = partOf(side, pct, Math.min(pct + 1e-6, 100))[0];
