@@ -20,6 +20,11 @@ Values = Mapping[str, Any]
 
 _ROWS = {row.field: row for row in DESIGN}
 _NAMES = {"formula": re.compile(r"(paper|fe)?"), "mask": re.compile(r"(mask_\d+\.png)?")}
+# Words for fields of a change by hand.
+_BY_HAND = {
+    "move_mm": "move", "openF_mm": "the cut", "alpha_deg": "the uncut sector", "joint": "the joint",
+    "alpha_center_deg": "the sense",
+}  # fmt: skip
 _LONGEST = 200  # letters of a text
 
 
@@ -79,7 +84,7 @@ def in_words(text: str) -> str:
 
     def named(found: re.Match[str]) -> str:
         row = _ROWS.get(found[1])
-        return found[1] if row is None else f"\u201c{label(row)}\u201d"
+        return _BY_HAND.get(found[1], found[1]) if row is None else f"\u201c{label(row)}\u201d"
 
     return re.sub(r"`(\w+)`", named, text)
 

@@ -1,7 +1,7 @@
 // The joints: handles on the tube, numbers beside them, undo and redo, and the pressure that is shown.
 import { dial } from "./dial.js";
 import { moving, signed } from "./film.js";
-import { get, latest, post } from "./net.js";
+import { get, latest, post, Refused } from "./net.js";
 import { Pending } from "./pending.js";
 import * as stage from "./stage.js";
 
@@ -16,6 +16,7 @@ let first = null; // the view of the first version, where it is shown too
 let at = null; // the tube at a step of the slider
 let pending = new Pending();
 let sent = new Pending();
+let good = new Pending(); // the last changes that can be built
 let bent = null; // the tube with the changes, by the joint response
 let chosen = 0;
 let told = null; // the job that finite elements said something first of
@@ -35,7 +36,10 @@ export async function near(state) {
   if (JSON.stringify(sent.edits) === JSON.stringify(pending.edits) && sent.bar === pending.bar) bent = early;
 }
 
-export function forget() { pending.clear(); sent.clear(); bent = null; }
+export function forget() {
+  for (const changes of [pending, sent, good]) changes.clear();
+  bent = null;
+}
 
 // Show another version of the design.
 export async function open(state) {
@@ -44,6 +48,7 @@ export async function open(state) {
   at = moving(view.film, SUBSTEPS);
   pending.rebase(sent);
   sent.clear();
+  good.clear();
   bent = null;
   first = null;
   chosen = Math.min(chosen, view.joints.length - 1);
@@ -72,7 +77,7 @@ export function draw() {
   const ghost = bent ? stage.outlineOf(at(SUBSTEPS * view.film.shown).points)
     : first ? stage.outlineOf(first.film.lines[first.film.shown]) : null;
   return stage.show([
-    ...(view.subject ? stage.object(view.subject) : []), ...stage.around(view),
+    ...(view.subject ? stage.object(view.subject) : []), ...stage.around(view, !bent),
     ...(ghost ? [stage.ghost(ghost)] : []), ...stage.tube(shown),
     ...stage.joints(shown, now, chosen, { choose: pick, begin, moved, end, step }),
   ]);
@@ -147,6 +152,7 @@ const bend = latest(async () => {
   try {
     const answer = await post("bend", { version: base, edits: asked.edits, pressure_bar: asked.bar });
     if (base === number && pending.any) bent = answer;
+    if (base === number) good = asked;
     responses = answer.joints.map((joint) => joint.response);
     page.refused("");
   } catch (error) {
@@ -171,7 +177,19 @@ function change(wanted, done) {
 function release() {
   if (!pending.any) { sent.clear(); bent = null; return page.act(() => post("do/cancel", {})); }
   sent = pending.copy();
-  return page.act(() => post("do/change", { version: number, edits: sent.edits, pressure_bar: sent.bar }));
+  return page.act(async () => {
+    const ask = () => post("do/change", { version: number, edits: sent.edits, pressure_bar: sent.bar });
+    try {
+      await ask();
+    } catch (error) { // it cannot be built: back to what can
+      if (!(error instanceof Refused)) throw error;
+      pending = good.copy();
+      sent = good.copy();
+      if (pending.any) await ask();
+      bend();
+      throw error;
+    }
+  });
 }
 
 function begin(k) {

@@ -140,9 +140,9 @@ function label(text, x, y) {
 
 // --- the tube --------------------------------------------------------------------------------
 
-export function around(view) {
+export function around(view, told) {
   return [
-    line("rest", view.rest), view.band && line("band", view.band),
+    line("rest", view.rest), told && view.band && line("band", view.band),
     make("path", { class: "hatched", fill: "url(#hatch)", d: view.clamp }), line("clamped", view.clamp),
     line("halo wide", view.profile), line("profile", view.profile), ...view.missed.map((d) => line("missed", d)),
   ];
