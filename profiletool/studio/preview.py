@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache, reduce
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -23,7 +22,7 @@ from profiletool.records.profile import Profile
 from profiletool.report.film import still_of
 from profiletool.report.view import View, film_view, joints_view
 from profiletool.subject.recall import profile_of
-from profiletool.verify.near import bent_near
+from profiletool.verify.near import NearBench
 
 _EVERY = 10  # of the profile's points, 0.1 mm apart, counts for the misfit that is shown
 
@@ -47,23 +46,24 @@ def changed(file: Path, edits: Sequence[Edit]) -> tuple[Design, Profile]:
     return reduce(edited, edits, known), profile
 
 
-def by_fe(file: Path, edits: Sequence[Edit], known: Any) -> tuple[View, Any]:
-    """Bend a changed design by finite elements, from the state of a similar one where it is known.
+def by_fe(file: Path, edits: Sequence[Edit], bench: NearBench) -> View:
+    """Bend a changed design by finite elements, to show it soon; nothing is verified.
 
     Raises
     ------
     NotVerified
         They do not get there.
+    UsageError, UnreadableInput
     """
     design, profile = changed(file, edits)
     try:
-        shape, solution = bent_near(design, profile, known)
+        shape, solution = bench.bend(design, profile)
     except CannotBend as error:
         raise NotVerified(str(error)) from error
     view = joints_view(design)
     for row, theta in zip(view["joints"], np.degrees(solution.states[-1].theta), strict=True):
         row["fe"] = float(theta)
-    return {**view, **_bent(design, profile, shape), "by": "fe"}, solution
+    return {**view, **_bent(design, profile, shape), "by": "fe"}
 
 
 def _bent(design: Design, profile: Profile, shape: Shape) -> View:

@@ -24,6 +24,7 @@ from profiletool.studio.job import Job
 from profiletool.studio.preview import by_fe
 from profiletool.studio.view import outline_of, save_picture, subject_view
 from profiletool.subject.find import Subject, source_of
+from profiletool.verify.near import NearBench
 
 _GUESSED_MM = 150.0  # of a picture's longer side, to draw an object whose size is not told yet
 
@@ -33,10 +34,10 @@ Progress = Callable[[float], None]
 
 
 class Bench:
-    """What does jobs, in the current folder; it keeps the last solution of finite elements."""
+    """What does jobs, in the current folder; it keeps the last state of finite elements."""
 
     def __init__(self) -> None:
-        self._known: Any = None
+        self._near = NearBench()
 
     def done(self, job: Job, say: Say, progress: Progress) -> View:
         """Do a job; give what the page shows.
@@ -54,7 +55,7 @@ class Bench:
         if job.kind == "find":
             return _found(job, say)
         if job.kind == "near":
-            return self._near(job)
+            return by_fe(Path(job.file), _edits(job), self._near)
         if job.kind == "design":
             result = api.design(_request(job), say=say, progress=progress)
             view = {**design_view(result), "subject": _subject(job.file, result.subject)}
@@ -69,10 +70,9 @@ class Bench:
         write_folder(Path(str(job.number)), files_of(result), force=True)
         return view
 
-    def _near(self, job: Job) -> View:
-        """Bend a changed design from the last one's state, to show it soon; nothing is verified."""
-        view, self._known = by_fe(Path(job.file), _edits(job), self._known)
-        return view
+    def prepare(self) -> None:
+        """Get ready for the next job, while there is none."""
+        self._near.prepare()
 
 
 def _edits(job: Job) -> list[Edit]:

@@ -127,6 +127,8 @@ def _work(folder: str, line: Connection) -> None:
                 lambda share: tell("share", share),
             )
             tell("done", view)
+            if jobs.empty():
+                bench.prepare()
         except ProfiletoolError as error:
             tell("failed", in_words(str(error)))
         except Exception as error:  # a fault of ours shall not end the studio
