@@ -76,6 +76,13 @@ export function draw() {
   const now = { ...view, joints: view.joints.map((joint) => pending.of(joint)) };
   const ghost = bent ? stage.outlineOf(at(SUBSTEPS * view.film.shown).points)
     : first ? stage.outlineOf(first.film.lines[first.film.shown]) : null;
+  const colour = shown.by === "fe" ? "fe" : shown.by === "joint response" ? "response" : "formula";
+  const named = shown.by === "fe" ? "finite elements" : `the ${shown.by}`;
+  stage.legend([
+    ["profile", "profile to follow"], [`tube ${colour}`, `tube by ${named}`], [`window ${colour}`, "cuts"],
+    ...(ghost ? [["ghost", bent ? "before the change" : "the first"]] : []),
+    ...(view.band && !bent ? [["band", "95 % of builds"]] : []), ["rest", "tube at rest"], ["clamped", "clamp"],
+  ]);
   return stage.show([
     ...(view.subject ? stage.object(view.subject) : []), ...stage.around(view, !bent),
     ...(ghost ? [stage.ghost(ghost)] : []), ...stage.tube(shown),

@@ -112,6 +112,7 @@ const take = (one) => act(() => ask.send(ask.values(one.mask)));
 function draw() {
   by("empty").hidden = Boolean(found || state.current !== null);
   const photograph = found?.photo && tab === "object" && (tool || !found.outline);
+  stage.legend([]);
   by("controls").hidden = tab === "object" || !joints.moves();
   if (photograph) {
     const hints = { ...state.values, ...(tool === "box" && draft ? { box: draft } : {}) };

@@ -210,4 +210,14 @@ export function joints({ points, windows }, view, chosen, act) {
   return parts;
 }
 
+// Say what the lines are: pairs of a line's class and words.
+export function legend(rows) {
+  document.getElementById("legend").replaceChildren(...rows.map(([kind, words]) => {
+    const item = document.createElement("li");
+    const shown = kind.startsWith("window") ? "M2,1H26V11H2Z" : "M1,6H27";
+    item.append(make("svg", { viewBox: "0 0 28 12", "aria-hidden": "true" }, line(kind, shown)), words);
+    return item;
+  }));
+}
+
 export const ghost = (outline) => line("ghost", outline);
