@@ -74,7 +74,8 @@ def _socket(port: int) -> socket.socket:
     OutputError
         Another program does on this port.
     """
-    ours = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    # With its protocol said, asyncio sends without delay: 40 ms less for each answer.
+    ours = socket.socket(socket.AF_INET, socket.SOCK_STREAM, socket.IPPROTO_TCP)
     try:
         if os.name == "posix":  # elsewhere it would let two servers have one port
             ours.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
