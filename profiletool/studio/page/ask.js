@@ -79,7 +79,14 @@ export function fill(known) {
   }
 }
 
-export const send = (known) => post("do/set", { values: known });
+// How often options began or ended to be sent: a state that was asked for before is an old one.
+let turn = 0;
+export const turns = () => turn;
+
+export async function send(known) {
+  turn += 1;
+  try { await post("do/set", { values: known }); } finally { turn += 1; }
+}
 
 // Take a picture that is dropped, pasted or chosen.
 export function taking(act) {

@@ -21,6 +21,7 @@ async function poll() {
   clearTimeout(timer);
   try {
     const known = found ? state?.found_revision : "";
+    const turns = ask.turns();
     const next = await get(`state?found=${known ?? ""}`);
     by("gone").hidden = true;
     const started = state?.current !== next.current && next.current !== null;
@@ -34,6 +35,7 @@ async function poll() {
     }
     if (state.running?.near) await joints.near(state);
     if (first && state.current !== null) choose("joints");
+    if (turns === ask.turns() && turns % 2 === 0) ask.fill(state.values);
     if (changed || state.running) show();
   } catch (error) {
     const restarted = error instanceof Refused;
@@ -80,7 +82,6 @@ function show() {
   by("design").disabled = !found?.sized;
   for (const name of ["joints", "files"]) by(`tab-${name}`).disabled = state.current === null;
   by("toml").textContent = state.toml || "# all options have their defaults";
-  ask.fill(state.values);
   showFound();
   joints.show(state);
   by("where").textContent = state.folder;
