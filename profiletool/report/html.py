@@ -32,7 +32,9 @@ from profiletool.verdict.summary import built_text, off_text
 def report_html(dossier: Dossier) -> bytes:
     """Write the report: the same dossier gives the same bytes."""
     name = _name(dossier)
-    script, style = (_asset(f"report.{kind}") for kind in ("js", "css"))
+    style, states, motion = (_asset(name) for name in ("report.css", "film.js", "report.js"))
+    # A page from disk has no modules.
+    script = Markup(states.replace("\nexport ", "\n") + motion)
     film = _film(dossier)
     head = tag(
         "head",
@@ -185,8 +187,7 @@ def _film(dossier: Dossier) -> Film:
     scene, found = dossier.scene, dossier.found
     if found is None:
         return still_of(scene.bent, scene.design)
-    # A shape that misses the object would jump where the object comes.
-    return film_of(found, scene.design, dossier.grip if scene.design.feasible else None)
+    return film_of(found, scene.design, dossier.grip)
 
 
 def _shape(dossier: Dossier, film: Film) -> Markup:
