@@ -89,7 +89,7 @@ def film_of(found: Verification, design: Design, grip: Grip | None = None) -> Fi
     """
     free = (found.rest, *found.states)
     most = found.last.pressure_bar * (1.0 + _ABOVE)
-    held = ()
+    held: tuple[GripState, ...] = ()
     if grip is not None and design.feasible:
         held = tuple(s for s in grip.states if s.pressure_bar > most)
     states: tuple[FeState | GripState, ...] = (*free, *held)
