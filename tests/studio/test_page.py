@@ -43,6 +43,10 @@ class Server:
         told = next(line for line in lines if "http://" in line)
         self.address = told[told.index("http://") :].strip()
 
+    def end(self, how: signal.Signals) -> None:
+        self.process.send_signal(how)
+        self.process.communicate()
+
     @property
     def workers(self) -> list[int]:
         """Numbers of the processes that it started."""
@@ -125,8 +129,7 @@ def server(samples: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[
     ours = Server(tmp_path_factory.mktemp("studio") / "work")
     ours.start(samples / "bulb.png")
     yield ours
-    ours.process.send_signal(signal.SIGINT)
-    ours.process.wait(20)
+    ours.end(signal.SIGINT)
 
 
 def test_the_whole_way_by_pointer(browser: Browser, server: Server) -> None:
@@ -227,8 +230,7 @@ def test_what_a_killed_server_leaves(browser: Browser, server: Server, samples: 
     page.wait(f"!{IDLE}")
     workers = server.workers
     assert workers
-    server.process.kill()
-    server.process.wait()
+    server.end(signal.SIGKILL)
     page.wait("!document.getElementById('gone').hidden")
     assert "Nothing is lost" in page.text("gone")
     for number in workers:

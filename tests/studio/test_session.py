@@ -18,6 +18,7 @@ from profiletool.report import outputs
 from profiletool.report.outputs import DESIGN_FILES
 from profiletool.studio.state import restored
 from profiletool.verify.check import Check
+from tests.calls import call
 from tests.studio.conftest import Studio, opened
 
 QUICK = {"method": "paper", "joints": 2, "verify": False, "end_pct": 70}
@@ -216,3 +217,19 @@ def test_a_folder_that_is_no_session_is_refused(
 def test_a_change_is_written_as_it_is_read() -> None:
     for text in ("3:alpha=103.13240312354819,openF=8.0,move=-2.5,center=90.0", "1:move=0.1"):
         assert str(edit_of(text)) == text
+
+
+@pytest.mark.slow
+def test_the_files_are_those_of_the_command_line(studio: Studio, samples: Path) -> None:
+    studio.put(samples / "egg.png")
+    studio.post("do/set", {"values": QUICK})
+    studio.post("do/design", {})
+    studio.worker.work()
+    (line,) = studio.state["commands"]
+    assert call(*line.split()).exit_code in (0, 6)
+    ours, theirs = (
+        {path.name: path.read_bytes() for path in folder.iterdir()}
+        for folder in (studio.session.place(1), Path("made/1"))
+    )
+    assert {"design.json", "report.html", "template.pdf", "overlay.png"} <= set(ours)
+    assert ours == theirs

@@ -81,11 +81,14 @@ export function fill(known) {
 
 // How often options began or ended to be sent: a state that was asked for before is an old one.
 let turn = 0;
+let flying = 0; // requests that are not answered yet
 export const turns = () => turn;
+export const settled = () => flying === 0;
 
 export async function send(known) {
   turn += 1;
-  try { await post("do/set", { values: known }); } finally { turn += 1; }
+  flying += 1;
+  try { await post("do/set", { values: known }); } finally { turn += 1; flying -= 1; }
 }
 
 // Take a picture that is dropped, pasted or chosen.

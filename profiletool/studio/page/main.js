@@ -35,7 +35,7 @@ async function poll() {
     }
     if (state.running?.near) await joints.near(state);
     if (first && state.current !== null) choose("joints");
-    if (turns === ask.turns() && turns % 2 === 0) ask.fill(state.values);
+    if (turns === ask.turns() && ask.settled()) ask.fill(state.values);
     if (changed || state.running) show();
   } catch (error) {
     const restarted = error instanceof Refused;
