@@ -10,6 +10,7 @@ import pytest
 
 from profiletool.errors import NoObject, NoScale, UsageError
 from profiletool.files.design_json import load_design
+from profiletool.image.load import load_picture
 from profiletool.records.bench import Seen
 from profiletool.subject.tube.camera import FlatCamera, Place, SheetCamera
 from profiletool.subject.tube.edges import edges_across, sampled, shown
@@ -179,8 +180,8 @@ def test_dots_and_rings_are_lines(known: Family) -> None:
     ("drawn", "looked", "error", "said"),
     [
         ({}, Looked(), NoScale, "mm_per_px"),
-        ({"place": Place(60.0, 300.0, 1.5, 1.0)}, Looked(MM_PER_PX), NoObject, "no tube"),
-        ({"place": Place(60.0, 75.0, 1.5, 1.0)}, Looked(MM_PER_PX), NoObject, "0.8.png"),
+        ({"place": Place(60.0, 300.0, 1.5, 1.0)}, Looked(MM_PER_PX), NoObject, "0.8.png: no actuator of"),
+        ({"place": Place(60.0, 75.0, 1.5, 1.0)}, Looked(MM_PER_PX), NoObject, "out of the frame"),
         ({}, Looked(MM_PER_PX, lines={("0.8.png", 9): Line(np.eye(2))}), UsageError, "sector 10"),
         ({}, Looked(MM_PER_PX, box=(5000.0, 0.0, 10.0, 10.0)), UsageError, "box"),
     ],
@@ -191,6 +192,15 @@ def test_what_cannot_be_measured_is_refused(
 ) -> None:
     with pytest.raises(error, match=said):
         measured(known, (0.8,), looked, **drawn)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("thing", ["pear", "bulb"])
+def test_another_thing_is_no_actuator(known: Family, samples: Path, thing: str) -> None:
+    shot = load_picture(samples / f"{thing}.png")
+    scale = Looked(shot.mm_per_px)
+    with pytest.raises(NoObject, match=f"{thing}.png: no actuator of this design found"):
+        measure_series(known, [f"{thing}.png"], [0.8], lambda _: shot, scale)
 
 
 class Squarely:
