@@ -229,6 +229,8 @@ def _seen(fit: _Fit, family: Family) -> Seen:
     tube = fitted.tube
     outline = family.outline(tube.bar, tube.turn, tube.grow)
     lines = view.camera.lines(outline, tube.place, tube.size)
+    none = np.zeros(family.joints)
+    planned = view.camera.lines(family.outline(view.bar, none, none), tube.place, tube.size)
     theta = family.theta_deg(tube.bar, tube.turn)
     count = family.joints
     spread = np.degrees(np.sqrt(np.diag(fitted.covariance)[5 : 5 + count]))
@@ -244,7 +246,7 @@ def _seen(fit: _Fit, family: Family) -> Seen:
     middle = lines.mean(axis=0)
     wide = float(np.linalg.norm(lines[1, 0] - lines[0, 0]))
     return Seen(
-        view.name, view.bar, angles, lines, fitted.px[fitted.believed],
+        view.name, view.bar, angles, lines, planned, fitted.px[fitted.believed],
         np.array([middle[pair] for pair in ends]), outline.axis[family.middles],
         2.0 * float(outline.half[0]) / wide, fitted.rms_px,
     )  # fmt: skip
