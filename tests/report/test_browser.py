@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -14,16 +13,10 @@ from profiletool.report.film import Film, film_of
 from profiletool.report.html import report_html
 from profiletool.report.markup import MINUS
 from profiletool.report.outputs import files_of
-from tests.report.browser import NARROW, WIDE, Browser, started
+from tests.report.browser import NARROW, WIDE, Browser
 from tests.report.dossiers import designed, unverified, verified, with_joints
 
 pytestmark = pytest.mark.slow
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
-    with started(tmp_path_factory.mktemp("chromium")) as ours:
-        yield ours
 
 
 @pytest.fixture(scope="module")

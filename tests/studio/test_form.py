@@ -25,8 +25,8 @@ OTHER: dict[str, Any] = {
     "formula": "paper", "extrapolate": True, "method": "paper", "joints": 4, "tolerance_mm": 0.7,
     "interference_mm": 0.2, "base_free": True, "alpha_step_deg": 5.0, "place_step_mm": 0.5,
     "objective": "nominal", "build": "thread=0.25", "verify": False, "refine": False,
-    "grip": False, "solid": "turned", "nu": 0.49, "thread_factor": 1.1, "sector_extra_deg": 5.0,
-    "gravity": "down",
+    "grip": False, "grip_N": 1.5, "solid": "turned", "nu": 0.49, "thread_factor": 1.1,
+    "sector_extra_deg": 5.0, "gravity": "down",
 }  # fmt: skip
 
 
