@@ -128,6 +128,8 @@ def _number(value: Any, said: str) -> float:
 def _literal(row: Option, value: Any) -> str:
     if row.kind.count == 1:
         return json.dumps(str(value))
+    if row.flag.startswith("--no-"):
+        return json.dumps(not value)
     if isinstance(value, tuple):
         return json.dumps(list(value))
     return json.dumps(value, ensure_ascii=False)
