@@ -244,7 +244,7 @@ GRIP = (
 MODEL = tuple(row for row in DESIGN if row.path.startswith("model."))
 # Fields of other records and commands that messages name.
 _OTHERS = {
-    "kerf_mm": "--kerf", "out": "--out", "force": "--force",
+    "kerf_mm": "--kerf", "port": "--port", "out": "--out", "force": "--force",
     "alpha_center_deg": "--alpha-center", "base": "--from", "runs": "--runs",
     "scheduler": "--scheduler", "workers": "--workers", "alpha_deg": "--alpha",
     "openF_mm": "--openF", "theta_deg": "--theta", "tip_mm": "--tip", "at_bar": "--at",
