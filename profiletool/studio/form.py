@@ -76,7 +76,8 @@ def fields() -> list[dict[str, Any]]:
 
 def label(row: Option) -> str:
     """Give an option's name on the page."""
-    return row.flag.removeprefix("--").replace("-", " ").capitalize()
+    name = row.flag.removeprefix("--").removeprefix("no-").replace("-", " ").capitalize()
+    return f"{name}, N" if row.field.endswith("_N") else name
 
 
 def in_words(text: str) -> str:
