@@ -192,6 +192,13 @@ def _facts(design: Design, size: tuple[float, float], wish: Wish) -> list[str]:
     ]
 
 
+def alone(design: Design) -> str:
+    """Say that a highest pressure holds for the finger alone, where it works above it."""
+    top = design.trim[-1].pressure_bar if design.trim else design.pressure_bar
+    at = design.operate_bar
+    return "" if at is None or at <= top else " without its object"
+
+
 def _setting(design: Design) -> Iterator[str]:
     """Return how to set the pressure on the finished actuator, where the design says that."""
     if not design.trim:
@@ -199,10 +206,12 @@ def _setting(design: Design) -> Iterator[str]:
     x, y = design.planned.tip_mm
     bar, top = design.pressure_bar, design.trim[-1].pressure_bar
     yield (
-        f"Before use: inflate {CYCLES} times to {top:.2f} bar, never more. Hold {bar:.2f} bar for "
-        f"a minute, then set the pressure by the tip (planned: x {x:.1f}, y {y:.1f} mm) or the "
-        "angles: see the report."
+        f"Before use: inflate {CYCLES} times to {top:.2f} bar, never more{alone(design)}. Hold "
+        f"{bar:.2f} bar for a minute, then set the pressure by the tip (planned: x {x:.1f}, "
+        f"y {y:.1f} mm) or the angles: see the report."
     )
+    if design.operate_bar is not None:
+        yield f"On its object: work at {design.operate_bar:.2f} bar."
 
 
 def _warnings(design: Design, seam: SeamChoice, wish: Wish) -> list[str]:
