@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from profiletool.files.angles_csv import read_angles
     from profiletool.files.design_json import load_design
     from profiletool.joints.plan import Plan
-    from profiletool.outputs import files_of
     from profiletool.pipeline import Result
     from profiletool.records.design import Design, Joint
     from profiletool.records.picture import Picture
@@ -31,6 +30,7 @@ if TYPE_CHECKING:
     from profiletool.records.request import Request, TubeSpec
     from profiletool.records.setting import AngleReading, PressureSetting
     from profiletool.report.figures import figures_of
+    from profiletool.report.outputs import files_of
     from profiletool.subject.find import Subject
     from profiletool.verify.check import Check
     from profiletool.verify.setting import trim_pressure
@@ -88,7 +88,7 @@ _HOMES = {
     "derive_formula": "api",
     "design": "api",
     "figures_of": "report.figures",
-    "files_of": "outputs",
+    "files_of": "report.outputs",
     "find_subject": "api",
     "formula_file": "campaign.formula_file",
     "load_design": "files.design_json",

@@ -72,6 +72,8 @@ class Seen:
         Joint by joint.
     outline_px : (2, S, 2)
         Both lines of the fitted tube in the picture, facing first; S places along the tube.
+    predicted_px : (2, S, 2)
+        The same as the model has the tube at that pressure, from the clamp as it is seen.
     edges_px : (N, 2)
         Edges that were believed.
     sectors_px : (J + 1, 2, 2)
@@ -88,6 +90,7 @@ class Seen:
     pressure_bar: float
     angles: tuple[Angle, ...]
     outline_px: FloatArray
+    predicted_px: FloatArray
     edges_px: FloatArray
     sectors_px: FloatArray
     phalanges_mm: FloatArray

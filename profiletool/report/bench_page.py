@@ -1,28 +1,21 @@
-"""The page of a measurement: angles, agreement, every picture beside the fitted tube."""
+"""The page of a measurement: angles, agreement, and the film of its pictures."""
 
 from __future__ import annotations
 
-import base64
-import io
 from collections.abc import Iterable
-from importlib.resources import files
 
 from matplotlib.figure import Figure
-from PIL import Image
 
 from profiletool.records.bench import Agreement
 from profiletool.report.bench import NAMES, BenchOutput, compare_json
 from profiletool.report.bench_figures import angles_figure, regression_figure, ways_figure
+from profiletool.report.bench_film import bench_film
 from profiletool.report.figure import png, svg
 from profiletool.report.markup import Markup, adopted, pairs, signed, table, tag
 from profiletool.report.markup import text as escaped
+from profiletool.report.page import asset, page
 from profiletool.report.registry import Writers
 
-_POLICY = (
-    "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; "
-    "form-action 'none'"
-)
-_PAGE_PX = 700  # of a picture on the page, at most
 R2_ALONE = (
     "R² alone says little: a model that is 30 % too stiff has an R² near 1. Slope, bias and limits "
     "of agreement tell whether it is right."
@@ -32,25 +25,15 @@ R2_ALONE = (
 def bench_html(output: BenchOutput) -> bytes:
     """Write the page: the same output gives the same bytes."""
     name = output.design.source.file
-    style = files("profiletool.report").joinpath("report.css").read_text("utf-8")
-    head = tag(
-        "head",
-        tag("meta", charset="utf-8"),
-        tag("meta", http_equiv="Content-Security-Policy", content=_POLICY),
-        tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
-        tag("meta", name="color-scheme", content="light dark"),
-        tag("link", rel="icon", href="data:,"),
-        tag("title", f"{name}: on the bench"),
-        tag("style", Markup(style)),
-    )
+    script, style = asset("bench.js"), Markup(asset("report.css") + asset("bench.css"))
     header = tag(
         "header",
         tag("p", "Measured on the bench", class_="eyebrow"),
         tag("h1", tag("bdi", name)),
         pairs(list(_facts(output)), "facts"),
     )
-    body = tag("body", header, tag("main", *_sections(output)))
-    return f"<!doctype html>\n{tag('html', head, body, lang='en')}\n".encode()
+    main = tag("main", *_sections(output))
+    return page(f"{name}: on the bench", style, script, header, main, tag("script", script))
 
 
 def _facts(output: BenchOutput) -> Iterable[tuple[str, str]]:
@@ -87,7 +70,7 @@ def _sections(output: BenchOutput) -> Iterable[Markup]:
     )  # fmt: skip
     said = "Midpoints of the wrapped sectors as the pressure rises."
     yield _section("ways", "Trajectories", _plot(ways_figure(output), "w", said))
-    yield _section("pictures", "Pictures", *_pictures(output))
+    yield _section("pictures", "Pictures", bench_film(output))
 
 
 def _section(name: str, title: str, *inner: Markup) -> Markup:
@@ -142,19 +125,6 @@ def _row(name: str, one: Agreement | None) -> tuple[str, ...]:
         name, str(one.count), f"{one.slope:.3f}", signed(one.intercept_deg, 2), f"{one.r2:.4f}",
         f"{one.rmse_deg:.2f}", signed(one.bias_deg, 2), f"{signed(low, 2)} to {signed(high, 2)}",
     )  # fmt: skip
-
-
-def _pictures(output: BenchOutput) -> Iterable[Markup]:
-    for one, data in zip(output.seen, output.overlays, strict=True):
-        said = f"{one.picture}, {one.pressure_bar:.2f} bar: fitted lines blue, edges orange."
-        with Image.open(io.BytesIO(data)) as image:
-            small = image.convert("RGB")
-            small.thumbnail((_PAGE_PX, _PAGE_PX))
-        buffer = io.BytesIO()
-        small.save(buffer, "JPEG", quality=82)
-        source = f"data:image/jpeg;base64,{base64.b64encode(buffer.getvalue()).decode()}"
-        image_tag = Markup(f'<img src="{source}" alt="{escaped(said)}" loading="lazy"/>')
-        yield tag("figure", image_tag, tag("figcaption", said), class_="plot")
 
 
 BENCH_FILES: Writers[BenchOutput] = {

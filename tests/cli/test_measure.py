@@ -45,6 +45,9 @@ def test_a_folder_of_results(samples: Path, shot: Path, tmp_path: Path) -> None:
     page = (out / "report.html").read_text()
     assert "R² alone says little" in page
     assert "://" not in page.replace("http://www.w3.org", "")
+    assert page.count('class="shot"') == page.count("data:image/jpeg") == 1
+    assert page.index('class="predicted"') < page.index('class="fitted"')
+    assert len(page) < 3_000_000
 
 
 @pytest.mark.parametrize(

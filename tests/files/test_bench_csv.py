@@ -59,7 +59,7 @@ def test_measured_angles_come_back(tmp_path: Path) -> None:
         Angle(-8.0, 1.2, "by hand"),
     )
     none = np.zeros((0, 2))
-    seen = Seen("a, b.png", 1.2, angles, none, none, none, none, 0.1, 0.2)
+    seen = Seen("a, b.png", 1.2, angles, none, none, none, none, none, 0.1, 0.2)
     (tmp_path / "a.csv").write_bytes(write_angles([seen]))
     assert (tmp_path / "a.csv").read_text().splitlines()[2] == '"a, b.png",1.2,2,,,lost'
     found = read_angles(tmp_path / "a.csv")

@@ -1,13 +1,15 @@
-"""Dossiers of two designs, and their pages."""
+"""Dossiers of two designs, their pages, and a browser."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from profiletool.report.dossier import Dossier
 from profiletool.report.html import report_html
+from tests.report.browser import Browser, started
 from tests.report.dossiers import (
     designed,
     ended_early,
@@ -17,6 +19,12 @@ from tests.report.dossiers import (
     with_joints,
 )
 from tests.report.pages import Page
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    with started(tmp_path_factory.mktemp("chromium")) as ours:
+        yield ours
 
 
 @pytest.fixture(scope="module")

@@ -3,41 +3,20 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from profiletool.outputs import files_of
 from profiletool.pipeline import Request, Result, run
 from profiletool.report.film import Film, film_of
 from profiletool.report.html import report_html
 from profiletool.report.markup import MINUS
-from tests.programs import program
-from tests.report.browser import FLAGS, NARROW, WIDE, Browser
+from profiletool.report.outputs import files_of
+from tests.report.browser import NARROW, WIDE, Browser
 from tests.report.dossiers import designed, unverified, verified, with_joints
 
 pytestmark = pytest.mark.slow
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
-    chromium, chromedriver = program("chromium"), program("chromedriver")
-    from selenium import webdriver
-    from selenium.webdriver.chrome.options import Options
-    from selenium.webdriver.chrome.service import Service
-
-    options = Options()
-    options.binary_location = chromium
-    for flag in (*FLAGS, f"--user-data-dir={tmp_path_factory.mktemp('chromium')}"):
-        options.add_argument(flag)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    driver = webdriver.Chrome(options=options, service=Service(chromedriver))
-    try:
-        yield Browser(driver)
-    finally:
-        driver.quit()
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ import numpy as np
 
 from profiletool.records.units import BoolArray, FloatArray, IntArray
 from profiletool.subject.tube.camera import Camera
-from profiletool.subject.tube.edges import Shown, edges_across
+from profiletool.subject.tube.edges import Edges, Shown, edge_pairs, edges_across
 from profiletool.subject.tube.family import Family
 from profiletool.subject.tube.values import Known, Line, Tube
 
@@ -17,6 +17,7 @@ from profiletool.subject.tube.values import Known, Line, Tube
 # of a lengthening; of the model's pressure over itself.
 _TURN_RAD, _TURN_SHARE, _GROW_MM, _BAR_SHARE = np.radians(1.0), 0.12, 1.0, 0.3
 _MARGIN_MM, _SPACING_MM = 0.25, 0.5  # of the places that are looked at
+_WIDTH_MM = 0.06  # standard deviation of the tube's width along it
 _WIDE_MM, _SPARSE_MM = 1.5, 1.5  # a reach, from which on they stand that far apart
 
 
@@ -79,10 +80,18 @@ def edge_rows(picture: Shown, camera: Camera, family: Family, tube: Tube, reach_
     places = np.flatnonzero(family.wrapped(_MARGIN_MM))
     places = places[places % every == 0]
     px_per_mm = float(np.median(np.linalg.norm(across, axis=1))) / (2.0 * family.radius)
+    reach, at_both, out_both = reach_mm * px_per_mm, base[:, places], normal[:, places]
+    found: tuple[Edges, ...]
+    if reach_mm < _WIDE_MM:
+        found = edge_pairs(picture, at_both, out_both, reach, 0.5 * reach, _WIDTH_MM * px_per_mm)
+    else:
+        found = tuple(
+            edges_across(picture, at, out, reach, 0.5 * reach)
+            for at, out in zip(at_both, out_both, strict=True)
+        )
     parts = []
-    for side in (0, 1):
-        at, out = base[side, places], normal[side, places]
-        edges = edges_across(picture, at, out, reach_mm * px_per_mm, 0.5 * reach_mm * px_per_mm)
+    for side, edges in enumerate(found):
+        at, out = at_both[side], out_both[side]
         slope = np.einsum("vsk,sk->sv", slopes[:, side, places], out)
         parts.append((edges.off, slope, at + edges.off[:, None] * out, edges.seen))
     off, slope, px, seen = (np.concatenate(part) for part in zip(*parts, strict=True))

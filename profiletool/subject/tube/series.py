@@ -31,7 +31,7 @@ _MODEL_DEG = 0.06  # what the model's own course of turning is uncertain by
 _SAME = np.array([0.15, 0.15, np.radians(0.15), 0.004])  # of places that agree, beside their sigmas
 _FLOOR = np.array([0.05, 0.05, np.radians(0.04), 0.001])
 _AGREE = 16.0  # chi-squared of four
-_SEEN_SHARE, _LEAST_SEEN, _SEEN_SCORE, _CUT_SHARE = 0.5, 0.3, 0.35, 0.02
+_SEEN_SHARE, _SEEN_SCORE, _CUT_SHARE = 0.5, 0.35, 0.02
 _MOST_SIGMAS = 4.0  # that a scale may be off what was said of it
 _MOST_OTHERWISE = 1.5  # usual deviations from the model, that half of the joints may have
 
@@ -119,7 +119,7 @@ def _fitted(view: View, family: Family, looked: Looked, last: _Fit | None) -> _F
         if _whole(found, family) and found.fitted.share.mean() > 0.9:
             break
     if best is None or not _whole(best, family):
-        raise NoObject(_missing(view, best))
+        raise NoObject(_missing(view, best, family))
     return best
 
 
@@ -131,19 +131,20 @@ def _searched(view: View, family: Family, looked: Looked) -> list[Found]:
         point = view.plane.seen(at) / view.plane.mm_per_px
     found = find_tube(view.plane, family, tried, (family.sign, -family.sign), allowed, point)
     if not found or found[0].score < _SEEN_SCORE:
-        raise NoObject(_missing(view, None))
+        raise NoObject(_missing(view, None, family))
     return found
 
 
-def _missing(view: View, best: _Fit | None) -> str:
-    if best is not None and best.fitted.outside > _CUT_SHARE and _worth(best.fitted) > _LEAST_SEEN:
+def _missing(view: View, best: _Fit | None, family: Family) -> str:
+    if best is not None and _alike(best, family):
         return (
             f"{view.name}: the actuator runs out of the frame; show it whole, from the clamp to "
             "the tip"
         )
     return (
-        f"{view.name}: no tube as the design's at about {view.bar:g} bar is found in it; show it "
-        "whole and squarely, check scale and pressure, or say where it is with `point` or `box`"
+        f"{view.name}: no actuator of this design found in the picture, at about {view.bar:g} bar; "
+        "show it whole and squarely, check scale and pressure, or say where it is with `point` or "
+        "`box`"
     )
 
 
@@ -152,12 +153,17 @@ def _worth(fitted: Fitted) -> float:
 
 
 def _whole(fit: _Fit, family: Family) -> bool:
+    """Whether a fit is of the tube that was looked for, and of all of it."""
+    return _alike(fit, family) and fit.fitted.outside <= _CUT_SHARE
+
+
+def _alike(fit: _Fit, family: Family) -> bool:
     """Whether a fit is of the tube that was looked for: seen, of its size, bent much as it."""
     fitted, tube = fit.fitted, fit.fitted.tube
     sized = abs(tube.size) <= _MOST_SIGMAS * fit.view.camera.sigma
     usual = turn_sigma(family, tube.bar)
     bent = float(np.median(np.abs(tube.turn) / usual)) <= _MOST_OTHERWISE
-    return bent and sized and _worth(fitted) > _SEEN_SHARE and fitted.outside <= _CUT_SHARE
+    return bent and sized and _worth(fitted) > _SEEN_SHARE
 
 
 def _lined(view: View, family: Family, looked: Looked, fitted: Fitted) -> _Fit:
@@ -223,6 +229,8 @@ def _seen(fit: _Fit, family: Family) -> Seen:
     tube = fitted.tube
     outline = family.outline(tube.bar, tube.turn, tube.grow)
     lines = view.camera.lines(outline, tube.place, tube.size)
+    none = np.zeros(family.joints)
+    planned = view.camera.lines(family.outline(view.bar, none, none), tube.place, tube.size)
     theta = family.theta_deg(tube.bar, tube.turn)
     count = family.joints
     spread = np.degrees(np.sqrt(np.diag(fitted.covariance)[5 : 5 + count]))
@@ -238,7 +246,7 @@ def _seen(fit: _Fit, family: Family) -> Seen:
     middle = lines.mean(axis=0)
     wide = float(np.linalg.norm(lines[1, 0] - lines[0, 0]))
     return Seen(
-        view.name, view.bar, angles, lines, fitted.px[fitted.believed],
+        view.name, view.bar, angles, lines, planned, fitted.px[fitted.believed],
         np.array([middle[pair] for pair in ends]), outline.axis[family.middles],
         2.0 * float(outline.half[0]) / wide, fitted.rms_px,
     )  # fmt: skip

@@ -10,9 +10,10 @@ import pytest
 
 from profiletool.errors import NoObject, NoScale, UsageError
 from profiletool.files.design_json import load_design
+from profiletool.image.load import load_picture
 from profiletool.records.bench import Seen
 from profiletool.subject.tube.camera import FlatCamera, Place, SheetCamera
-from profiletool.subject.tube.edges import edges_across, sampled, shown
+from profiletool.subject.tube.edges import edge_pairs, edges_across, sampled, shown
 from profiletool.subject.tube.family import Family
 from profiletool.subject.tube.fit import fit_tube
 from profiletool.subject.tube.marks import mark_lines
@@ -73,6 +74,46 @@ def test_an_edge_is_found_between_pixels(at: float) -> None:
     found = edges_across(shown(np.round(rgb).astype(np.uint8)), px, normal, 8.0, 4.0)
     assert found.seen.all()
     assert px[:, 0] + found.off == pytest.approx(at, abs=0.05)
+
+
+def strips(*levels: tuple[float, float]) -> np.ndarray:
+    """Draw upright strips, blurred: each from an x on with its level."""
+    x = np.arange(140.0)
+    line = np.full(140, float(levels[0][1]))
+    for at, level in levels[1:]:
+        line += (level - line) * np.clip(x - at + 0.5, 0.0, 1.0)
+    line = np.convolve(np.pad(line, 4, mode="edge"), [0.25, 0.5, 0.25], "same")[4:-4]
+    return np.repeat(np.tile(line, (60, 1))[..., None], 3, axis=2).round().astype(np.uint8)
+
+
+@pytest.mark.parametrize(
+    ("levels", "right"),
+    [
+        (((0, 230), (40, 120), (100, 230)), 100.0),
+        (((0, 230), (40, 120), (100, 200), (105, 60)), 100.0),  # an object stands beside it
+        (((0, 230), (40, 120), (94, 190), (96, 120), (100, 180)), 100.0),  # a bright thread in it
+        (((0, 230), (40, 120), (104, 230)), None),  # no edge where it must be
+        (((0, 230), (40, 120)), None),
+    ],
+    ids=["plain", "object", "thread", "wider", "one line"],
+)
+def test_edges_are_as_far_apart_as_the_tube_is_wide(
+    levels: tuple[tuple[float, float], ...], right: float | None
+) -> None:
+    rgb = strips((0, 230), (40, 120), (100, 230))
+    rgb[25:] = strips(*levels)[25:]
+    y = np.arange(10.0, 35.0)
+    px = np.stack([np.column_stack([np.full(25, at), y]) for at in (41.0, 100.5)])
+    normal = np.stack([np.tile([side, 0.0], (25, 1)) for side in (-1.0, 1.0)])
+    left, other = edge_pairs(shown(rgb), px, normal, 7.0, 4.0, 0.5)
+    some = y > 29.0  # clear of where the strips change
+    if right is None:
+        assert not other.seen[some].any()
+        assert left.seen[some].all() == (len(levels) == 2)
+    else:
+        assert left.seen.all()
+        assert px[0, some, 0] - left.off[some] == pytest.approx(40.0, abs=0.1)
+        assert px[1, some, 0] + other.off[some] == pytest.approx(right, abs=0.3)
 
 
 def test_no_edge_on_a_plain_ground() -> None:
@@ -179,8 +220,8 @@ def test_dots_and_rings_are_lines(known: Family) -> None:
     ("drawn", "looked", "error", "said"),
     [
         ({}, Looked(), NoScale, "mm_per_px"),
-        ({"place": Place(60.0, 300.0, 1.5, 1.0)}, Looked(MM_PER_PX), NoObject, "no tube"),
-        ({"place": Place(60.0, 75.0, 1.5, 1.0)}, Looked(MM_PER_PX), NoObject, "0.8.png"),
+        ({"place": Place(60.0, 300.0, 1.5, 1.0)}, Looked(MM_PER_PX), NoObject, "no actuator of"),
+        ({"place": Place(60.0, 75.0, 1.5, 1.0)}, Looked(MM_PER_PX), NoObject, "out of the frame"),
         ({}, Looked(MM_PER_PX, lines={("0.8.png", 9): Line(np.eye(2))}), UsageError, "sector 10"),
         ({}, Looked(MM_PER_PX, box=(5000.0, 0.0, 10.0, 10.0)), UsageError, "box"),
     ],
@@ -191,6 +232,15 @@ def test_what_cannot_be_measured_is_refused(
 ) -> None:
     with pytest.raises(error, match=said):
         measured(known, (0.8,), looked, **drawn)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("thing", ["pear", "bulb"])
+def test_another_thing_is_no_actuator(known: Family, samples: Path, thing: str) -> None:
+    shot = load_picture(samples / f"{thing}.png")
+    scale = Looked(shot.mm_per_px)
+    with pytest.raises(NoObject, match=f"{thing}.png: no actuator of this design found"):
+        measure_series(known, [f"{thing}.png"], [0.8], lambda _: shot, scale)
 
 
 class Squarely:
