@@ -16,7 +16,7 @@ from profiletool.image.find.region import SeveralAlike, region_on_ground
 from profiletool.image.find.rough import Rough, rough_of
 from profiletool.image.find.view import View
 
-BELIEVED = 0.33  # a candidate of less confidence is nothing to design from
+BELIEVED = 0.3  # a candidate of less confidence is nothing to design from
 _DOUBTED = "plain ground, doubted"
 _SAME = 0.94  # overlap of regions that the polish makes one
 _MOST_FIND = 0.5  # of the methods that agree most
