@@ -106,6 +106,7 @@ def test_a_point_beside_the_object_finds_nothing() -> None:
         find_silhouette(laid(disc(230, 110, 40)), hint=Hint(point=(40, 200)))
 
 
+@pytest.mark.slow
 def test_one_of_a_pile_by_a_point_or_a_box(shared: Path) -> None:
     picture = load_picture(shared / "photos" / "pear_in_hand.jpg")
     rows, columns = np.indices(picture.rgb.shape[:2])
