@@ -72,6 +72,11 @@ DESIGN = (
         "The object in white on black, a picture of the same size.",
     ),
     Option(
+        "--candidate", "look.candidate", _COUNT,
+        "Which to take of those that the picture of the candidates shows.", above=0.0,
+        metavar="N",
+    ),
+    Option(
         "--rotate", "look.rotate", _TURN,
         "Turn the object, deg counter-clockwise; auto: its axis upright.", metavar="auto|DEG",
     ),

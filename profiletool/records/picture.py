@@ -64,6 +64,8 @@ class Silhouette:
         How far the mask deserves to be believed, 0 to 1; a matte is believed wholly.
     held : bool
         Whether a hand seems to hide part of the object.
+    doubt : str
+        What of it may be a shadow, a reflection or a neighbour; empty where nothing is.
     """
 
     contour_px: FloatArray
@@ -73,6 +75,7 @@ class Silhouette:
     touches: frozenset[str]
     confidence: float = 1.0
     held: bool = False
+    doubt: str = ""
 
 
 @dataclass(frozen=True)

@@ -115,6 +115,8 @@ class Look:
         Pixels; inside the object.
     mask : Path, or None
         A picture of the object in white on black, or with transparent ground.
+    candidate : int or None
+        Which of the candidates to take that a doubtful picture shows, from 1.
     rotate : float or "auto"
         Degrees counter-clockwise to turn the object by.
     symmetric : bool
@@ -128,6 +130,7 @@ class Look:
     box: Box | None = None
     point: Point | None = None
     mask: Path | None = None
+    candidate: int | None = None
     rotate: float | Literal["auto"] = 0.0
     symmetric: bool = False
     flat: bool = False

@@ -98,7 +98,7 @@ def see(picture: Picture, asked: ScaleRequest, look: Look, say: Callable[[str], 
 def _hint(look: Look, picture: Picture) -> Hint:
     shape = picture.rgb.shape[:2]
     mask = None if look.mask is None else load_mask(look.mask, shape)
-    hint = Hint(look.box, look.point, mask)
+    hint = Hint(look.box, look.point, mask, look.candidate)
     check_hint(hint, shape)
     return hint
 
@@ -198,6 +198,8 @@ def _notes(silhouette: Silhouette, scale: Scale, look: Look) -> Iterator[str]:
             f"the silhouette is sure to {100.0 * silhouette.confidence:.0f} % only: look at it in "
             "overlay.png; `box`, `point` or `mask` say where the object is"
         )
+    if silhouette.doubt:
+        yield silhouette.doubt
     if silhouette.held:
         yield "a hand seems to hide part of the object: look at its outline in overlay.png"
     error = scale.measured_error

@@ -146,4 +146,4 @@ def _frontal_hint(hint: Hint, sheet: Rectified) -> Hint:
     mask = None if hint.mask is None else sheet.mask_of(hint.mask)
     if mask is not None and not mask.any():
         raise UsageError("the mask lies outside the printed sheet; the object must lie on it")
-    return Hint(box, point, mask)
+    return Hint(box, point, mask, hint.candidate)

@@ -33,7 +33,7 @@ def test_doubt_leaves_the_candidates_picture_and_no_folder(shared: Path, tmp_pat
     )
     assert (tmp_path / "mine_candidates.png").read_text() == "precious"
     assert not (tmp_path / "mine").exists()
-    pointed = unverified(photo, "--height", 90, "--point", "90,270")
+    pointed = unverified(photo, "--height", 90, "--point", "90,270", "--from", 15)
     assert pointed.exit_code == 0, pointed.stderr
     assert "% only: look at it in overlay.png" in pointed.stderr
 

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from profiletool.image.find.contour import resampled
 from profiletool.image.find.ground import BoolImage, FloatImage
-from profiletool.image.find.masks import largest_filled
 from profiletool.records.units import FloatArray
 
 _LAP = 60
@@ -92,54 +91,3 @@ def steps(colours: FloatImage) -> FloatImage:
     inner = colours[:, :-4] + colours[:, 1:-3]
     outer = colours[:, 3:-1] + colours[:, 4:]
     return np.asarray((outer - inner) / 2.0, np.float32)
-
-
-def snapped(lab: FloatImage, likely: FloatImage, mask: BoolImage, reach: int) -> BoolImage:
-    """Move an outline to the edge nearby that best parts two sets of colours.
-
-    Parameters
-    ----------
-    lab : (H, W, 3)
-    likely : (H, W)
-        How much likelier a pixel's colour is inside than outside, as a logarithm.
-    mask : (H, W)
-        One region.
-    reach : int
-        How far the outline may move, pixels.
-    """
-    rim = rim_of(np.dstack([lab, likely]), mask, reach + 2)
-    firm = np.linalg.norm(steps(rim.colours[..., :3]), axis=2)  # (N, 2 reach + 1)
-    firm = firm / max(float(np.median(firm.max(axis=1))), 1e-6)
-    inside = np.clip(rim.colours[:, 2:-2, 3], -2.0, 2.0)
-    # What lies further in than the edge is gained as object, what lies further out as ground.
-    gained = np.cumsum(inside, axis=1)
-    gain = 0.5 * (gained - 0.5 * inside) + 1.5 * np.minimum(firm, 1.5)
-    moved = _best_path(np.where(rim.on_frame[:, None], 0.0, gain)) - reach
-    line = _rounded_off(rim.points + moved[:, None] * rim.normals)
-    drawn = np.zeros(mask.shape, np.uint8)
-    cv2.fillPoly(drawn, [np.round(line * 16).astype(np.int32)], 1, shift=4)
-    return largest_filled(drawn > 0)
-
-
-def _best_path(gain: FloatArray) -> NDArray[np.intp]:
-    """Find the column in every row that gains most, never more than one column from the last.
-
-    The rows are a closed line's: at both ends some are gone through twice, so that the path does
-    not know where it was begun.
-    """
-    lap = min(_LAP, len(gain) // 2)
-    rows = np.concatenate([gain[-lap:], gain, gain[:lap]])
-    total = np.full((len(rows), rows.shape[1] + 2), -np.inf)  # a column to spare on both sides
-    total[0, 1:-1] = rows[0]
-    best = np.empty(rows.shape[1])
-    for row in range(1, len(rows)):
-        last = total[row - 1]
-        np.maximum(last[:-2], last[2:], out=best)
-        best -= _BEND
-        np.maximum(best, last[1:-1], out=best)
-        np.add(best, rows[row], out=total[row, 1:-1])
-    path = [int(total[-1].argmax())]
-    for last in total[-2::-1].tolist():
-        at = path[-1]
-        path.append(max((at, at - 1, at + 1), key=lambda k: last[k] - _BEND * (k != at)))
-    return np.array(path[::-1][lap:-lap]) - 1

@@ -34,9 +34,3 @@ def histogram(cell: NDArray[np.int32], mask: BoolImage) -> FloatImage:
 def likeness(one: FloatImage, other: FloatImage) -> float:
     """Bhattacharyya coefficient of two histograms: 0 nothing in common, 1 the same."""
     return float(np.sqrt(one * other).sum())
-
-
-def likelier(cell: NDArray[np.int32], one: FloatImage, other: FloatImage) -> FloatImage:
-    """Logarithm of how much likelier each pixel is in one histogram than in the other."""
-    floor = np.float32(1e-4)
-    return np.asarray(np.log((one + floor) / (other + floor))[cell], np.float32)

@@ -61,7 +61,7 @@ def to_lab(rgb: NDArray[np.uint8]) -> FloatImage:
     return np.asarray(cv2.cvtColor(scaled, cv2.COLOR_RGB2LAB), np.float32)
 
 
-def fit_ground(lab: FloatImage, usable: BoolImage) -> Ground:
+def fit_ground(lab: FloatImage, usable: BoolImage, within: BoolImage | None = None) -> Ground:
     """Fit a smooth colour surface to the border.
 
     Parameters
@@ -70,9 +70,12 @@ def fit_ground(lab: FloatImage, usable: BoolImage) -> Ground:
         Picture in CIE Lab.
     usable : (H, W)
         False where a pixel says nothing about the ground.
+    within : (H, W), or None
+        A region that is the ground: its own border is looked at instead of the picture's.
     """
     height, width = lab.shape[:2]
-    border = _sampled(usable & frame_of(usable.shape, _FRAME_SHARE))
+    looked_at = frame_of(usable.shape, _FRAME_SHARE) if within is None else border_of(within)
+    border = _sampled(usable & looked_at)
     if len(border[0]) < 2 * len(_POWERS):
         border = _sampled(usable)
     colours = lab[border].astype(np.float64)
@@ -99,6 +102,13 @@ def frame_of(shape: tuple[int, ...], share: float) -> BoolImage:
     frame = np.ones(shape, bool)
     frame[width:-width, width:-width] = False
     return frame
+
+
+def border_of(region: BoolImage) -> BoolImage:
+    """Mask the border of a region, off its very edge."""
+    size = float(np.sqrt(region.sum()))
+    deep = cv2.distanceTransform(region.view(np.uint8), cv2.DIST_L2, 3)
+    return np.asarray((deep > 1.0 + 0.02 * size) & (deep <= 3.0 + 0.06 * size))
 
 
 def _nearest_side(index: Sequence[NDArray[np.intp]], shape: tuple[int, ...]) -> NDArray[np.intp]:

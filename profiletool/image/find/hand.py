@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from enum import Enum
+
 import cv2
 import numpy as np
 
-from profiletool.image.find.candidates import View
 from profiletool.image.find.colours import histogram
 from profiletool.image.find.ground import BoolImage, frame_of
 from profiletool.image.find.masks import connected_to, rim
 from profiletool.image.find.shadow import edge_strength
+from profiletool.image.find.view import View
 
 # Skin of every tone has much the same hue (Xiao et al., Skin Res. Technol. 23 (2017) 21); in CIE
 # Lab, with room for the light it is seen in.
@@ -19,32 +21,39 @@ _COMMON = 0.015  # a colour of so much of two opposite strips is the ground's
 _GAP_PX, _NEAR_PX = 5, 7
 _FINGER_SHARE = 0.02  # of the shorter side: no finger is thinner
 _FIRM_LAB, _ROUGH_PX = 1.5, 13  # a step per pixel, within so much of a hand's rough outline
-_LARGE = 0.04  # of the picture
-_HIDDEN = 0.05  # more of an outline than this lies along the hand
+_HIDDEN, _COVERED = 0.05, 0.15  # more of an outline than this lies along a hand: said, refused
 _SLEEVE, _BEYOND = 0.03, 0.1  # more of a mask than this comes before the hand, and after it
 
 
-def is_held(view: View, mask: BoolImage) -> bool:
-    """Whether a hand hides part of the object that a mask (H, W) shows.
+class Hand(Enum):
+    """What a hand does to an object: nothing, hides a little of its outline, covers it."""
 
-    A hand has the colour of skin, which the ground has not, and comes in over the frame: by
-    itself, or in a sleeve that the mask then holds too. On a mottled ground a large hand is
-    taken to hold something, whatever the mask shows.
+    NONE = 0
+    NEAR = 1
+    COVERS = 2
+
+
+def hand_at(view: View, mask: BoolImage) -> Hand:
+    """Say what a hand does to the object that a mask (H, W) shows.
+
+    A hand has the colour of skin, which the ground has not, and comes in over the frame, by
+    itself or in a sleeve.
     """
     skin = _skin(view)
     if _sleeved(skin, mask):
-        return True
+        return Hand.COVERS
     hand = connected_to(frame_of(skin.shape, 0.0), skin)
     if not _ends_firmly(view, hand, mask):
-        return False  # a warm shadow
+        return Hand.NONE  # a warm shadow
     hand &= ~view.barred
-    if hand.mean() > _LARGE and not (view.plain or view.boxed or view.point is not None):
-        return True  # among many things it is the one held that is meant
     if (mask & ~hand).sum() < _BEYOND * mask.sum():
-        return False  # one thing, cut off by the frame
+        return Hand.NONE  # one thing, cut off by the frame
     outline = rim(mask)
     along = outline & _morphed(cv2.MORPH_DILATE, hand, _NEAR_PX)
-    return bool(along.sum() > _HIDDEN * outline.sum())
+    share = float(along.sum() / max(int(outline.sum()), 1))
+    if share > _COVERED:
+        return Hand.COVERS
+    return Hand.NEAR if share > _HIDDEN else Hand.NONE
 
 
 def _sleeved(skin: BoolImage, mask: BoolImage) -> bool:

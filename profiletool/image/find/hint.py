@@ -23,11 +23,14 @@ class Hint:
         Pixels; the object is the region that holds it.
     mask : (H, W) bool, or None
         The object itself, of the picture's size.
+    candidate : int, or None
+        Which of the candidates that a doubtful picture shows, from 1.
     """
 
     box: Box | None = None
     point: Point | None = None
     mask: BoolImage | None = None
+    candidate: int | None = None
 
 
 def check_hint(hint: Hint, shape: tuple[int, int]) -> None:

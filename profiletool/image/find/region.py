@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from profiletool.errors import NoObject
 from profiletool.image.find.ground import BoolImage, FloatImage, Ground
@@ -148,32 +147,3 @@ def _closed(mask: BoolImage) -> BoolImage:
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (3, 3))
     padded = np.pad(mask, 2).view(np.uint8)
     return np.asarray(cv2.morphologyEx(padded, cv2.MORPH_CLOSE, disc)[2:-2, 2:-2] > 0)
-
-
-def grabcut(rgb: NDArray[np.uint8], labels: NDArray[np.uint8], rounds: int = 3) -> BoolImage:
-    """Separate by colour mixtures, from labels of cv2.grabCut; speckle is opened away.
-
-    Parameters
-    ----------
-    rgb : (H, W, 3)
-    labels : (H, W)
-        GC_BGD, GC_FGD where it is certain, GC_PR_BGD and GC_PR_FGD where it is a guess.
-    rounds : int
-    """
-    share = float((labels & 1).mean())
-    if not _MIN_SHARE < share < 1.0:  # too few to tell their colours, on which it takes very long
-        return np.zeros(labels.shape, bool)
-    cv2.setRNGSeed(0)  # its colour clusters start from random ones
-    cut = labels.copy()
-    cv2.grabCut(
-        np.ascontiguousarray(rgb[..., ::-1]),
-        cut,
-        (0, 0, 1, 1),  # unused with a mask
-        np.zeros((1, 65)),
-        np.zeros((1, 65)),
-        rounds,
-        cv2.GC_INIT_WITH_MASK,
-    )
-    found = np.isin(cut, (cv2.GC_FGD, cv2.GC_PR_FGD))
-    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (5, 5))
-    return np.asarray(cv2.morphologyEx(found.view(np.uint8), cv2.MORPH_OPEN, disc) > 0)

@@ -69,15 +69,6 @@ def _standing_out(region: BoolImage, distance: FloatImage) -> list[BoolImage]:
     return [largest_filled(region & (distance > level * unit))]
 
 
-def faded(region: BoolImage, lab: FloatImage) -> bool:
-    """Whether much of an outline follows no edge, as where it takes in a shadow."""
-    around = _rim_strength(region, edge_strength(lab))
-    if len(around) == 0:
-        return False
-    weak = min(_WEAK_EDGE, 0.45 * float(np.quantile(around, 0.8)))
-    return bool((around < weak).mean() > _MOST_WEAK)
-
-
 def _flooded(region: BoolImage, floodable: BoolImage) -> BoolImage:
     """Take from a region what the ground reaches through gaps at least three pixels wide."""
     square = np.ones((3, 3), np.uint8)

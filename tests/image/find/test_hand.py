@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from profiletool.errors import Unsure
-from profiletool.image.find.candidates import view_of
-from profiletool.image.find.hand import is_held
+from profiletool.image.find.hand import Hand, hand_at
 from profiletool.image.find.hint import Hint
 from profiletool.image.find.silhouette import find_silhouette
+from profiletool.image.find.view import view_of
 from profiletool.records.picture import Picture, Silhouette
 
 SHAPE = HEIGHT, WIDTH = 300, 400
@@ -124,7 +124,7 @@ def test_a_hand_that_hides_nothing() -> None:
     assert found(beside).mask.sum() == pytest.approx(EGG, rel=0.005)
 
 
-def test_a_large_hand_among_many_things_holds_one_of_them() -> None:
+def test_a_large_hand_among_many_things_holds_none_that_it_does_not_touch() -> None:
     paints = np.array([(30, 60, 200), (30, 170, 60), (20, 140, 150), (60, 60, 70)])
     squares = np.random.default_rng(3).integers(0, 4, (HEIGHT // 20, WIDTH // 20))
     ground = np.kron(paints[squares], np.ones((20, 20, 1)))
@@ -133,9 +133,8 @@ def test_a_large_hand_among_many_things_holds_one_of_them() -> None:
     cv2.circle(egg, (150, 100), 40, 1, -1)
     cv2.line(rgb, (WIDTH, 250), (320, 200), TAN, 60)
     nowhere = np.zeros(SHAPE, bool)
-    assert is_held(view_of(rgb, nowhere), egg > 0)
-    assert not is_held(view_of(rgb, nowhere, point=(150.0, 100.0)), egg > 0)
-    assert not is_held(view_of(ground.astype(np.uint8), nowhere), egg > 0)
+    assert hand_at(view_of(rgb, nowhere), egg > 0) is Hand.NONE
+    assert hand_at(view_of(ground.astype(np.uint8), nowhere), egg > 0) is Hand.NONE
 
 
 def test_a_table_of_wood_is_no_hand() -> None:
@@ -144,4 +143,4 @@ def test_a_table_of_wood_is_no_hand() -> None:
     scene.rgb[225:] = WOOD
     picture = scene.picture()
     egg = picture.rgb[..., 2] > 160
-    assert not is_held(view_of(picture.rgb, np.zeros(SHAPE, bool)), egg)
+    assert hand_at(view_of(picture.rgb, np.zeros(SHAPE, bool)), egg) is Hand.NONE

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
 
-from profiletool.image.find.across import rim_of, snapped, steps
-from profiletool.image.find.candidates import view_of
-from profiletool.image.find.colours import cells, histogram, likelier, likeness
+from profiletool.image.find.across import rim_of, steps
+from profiletool.image.find.candidates import BELIEVED
+from profiletool.image.find.colours import cells, histogram, likeness
+from profiletool.image.find.judge import Region, judged
+from profiletool.image.find.masks import overlap
+from profiletool.image.find.mosaic import cut, mosaic_of, polished
 from profiletool.image.find.quality import Quality, quality_of
+from profiletool.image.find.view import view_of
 
 SHAPE = (240, 320)
 Y, X = np.mgrid[: SHAPE[0], : SHAPE[1]]
-BELIEVED = 0.5
 
 
 def disc(x: float = 150, y: float = 110, radius: float = 60) -> np.ndarray:
@@ -34,13 +39,14 @@ def checks() -> np.ndarray:
 
 def quality(rgb: np.ndarray, mask: np.ndarray) -> Quality:
     view = view_of(rgb, np.zeros(SHAPE, bool))
-    return quality_of(view.lab, view.cell, mask)
+    return quality_of(view, mask)
 
 
 @pytest.mark.parametrize("ground", [np.array((200, 198, 190)), checks()])
 def test_the_true_mask_is_believed(ground: np.ndarray) -> None:
     found = quality(picture(ground), disc())
-    assert found.confidence() > 0.9
+    assert found.confidence > 0.85
+    assert found.clear > 0.85
     assert found.edge > 0.99
     assert found.peak > 0.95
     assert found.steady > 0.97
@@ -63,33 +69,50 @@ WRONG = {
 @pytest.mark.parametrize("ground", [np.array((200, 198, 190)), checks()])
 def test_wrong_masks_are_not(ground: np.ndarray, name: str) -> None:
     rgb = picture(ground)
-    found = quality(rgb, WRONG[name])
-    assert found.confidence() < BELIEVED
-    assert found.confidence() < 0.6 * quality(rgb, disc()).confidence()
+    found, right = quality(rgb, WRONG[name]), quality(rgb, disc())
+    assert found.clear < 0.8 * right.clear
+    assert found.merit < right.merit
+
+
+@pytest.mark.parametrize("name", WRONG)
+@pytest.mark.parametrize("ground", [np.array((200, 198, 190)), checks()])
+def test_beside_the_true_one_wrong_masks_are_not_believed(ground: np.ndarray, name: str) -> None:
+    both = [Region(disc(), "right"), Region(WRONG[name], "wrong")]
+    right, wrong = judged(view_of(picture(ground), np.zeros(SHAPE, bool)), both, both)
+    assert (right.method, wrong.method) == ("right", "wrong")
+    assert right.confidence > 0.7
+    assert wrong.confidence < min(BELIEVED, 0.6 * right.confidence)
 
 
 def test_nothing_speaks_for_a_mask_on_a_blank_picture() -> None:
     found = quality(np.full((*SHAPE, 3), 128, np.uint8), disc())
     assert (found.edge, found.separation) == pytest.approx((0.0, 0.0), abs=1e-6)
-    assert found.confidence() < 0.05
+    assert found.clear < 1e-6
+    assert found.confidence < 0.05
 
 
 def test_shape_size_and_border_are_those_of_geometry() -> None:
     whole = quality(picture(), disc())
-    assert whole.compactness == pytest.approx(1.0, abs=0.03)
-    assert whole.solidity == pytest.approx(1.0, abs=0.02)
     assert whole.size == pytest.approx(np.pi * 60**2 / (240 * 320), rel=0.01)
     assert whole.border == 0.0
     square = (X < 100) & (Y < 100)
     assert quality(picture(), square).border == pytest.approx(0.5, abs=0.03)
-    ell = ((X < 180) & (X > 60) & (Y > 60) & (Y < 180)) & ~((X > 120) & (Y < 120))
-    assert quality(picture(), ell).solidity == pytest.approx(0.75 / 0.875, abs=0.03)
+    assert quality(picture(), square).four_cornered == 1.0
+    assert whole.four_cornered == 0.0
 
 
-def test_what_else_is_known_shifts_the_odds() -> None:
+@pytest.mark.parametrize("name", ["share", "drawn_by"])
+def test_what_other_candidates_say_counts(name: str) -> None:
     found = quality(picture(checks()), disc())
-    p, q = found.confidence(), found.confidence(1.5)
-    assert np.log(q / (1 - q)) - np.log(p / (1 - p)) == pytest.approx(1.5, abs=1e-9)
+    chances = [replace(found, **{name: value}).confidence for value in (0.1, 0.5, 1.0)]
+    assert chances == sorted(chances)
+    assert chances[2] > chances[0] + 0.1
+
+
+def test_a_learned_opinion_that_differs_is_doubt() -> None:
+    found = quality(picture(checks()), disc())
+    assert replace(found, learned=0.9).confidence == found.confidence
+    assert replace(found, learned=0.425).confidence == pytest.approx(0.5 * found.confidence)
 
 
 def test_colours_round_it_that_the_frame_does_not_show() -> None:
@@ -122,16 +145,16 @@ def test_a_tiny_or_cut_off_region_has_a_rim_too() -> None:
 
 @pytest.mark.parametrize("ground", [np.array((200, 198, 190)), checks()])
 @pytest.mark.parametrize("rough", [disc(radius=57), disc(radius=63), disc(152, 108)])
-def test_an_outline_snaps_to_the_edge(ground: np.ndarray, rough: np.ndarray) -> None:
-    view = view_of(picture(ground), np.zeros(SHAPE, bool))
-    near = cv2.dilate(rough.astype(np.uint8), np.ones((25, 25))).astype(bool) & ~rough
-    likely = likelier(view.cell, histogram(view.cell, rough), histogram(view.cell, near))
-    found = snapped(view.lab, likely, rough, 4)
-    before = (rough & disc()).sum() / (rough | disc()).sum()
-    after = (found & disc()).sum() / (found | disc()).sum()
-    assert before < 0.96
-    assert after > 0.965
-    assert after > before + 0.02
+def test_an_outline_is_drawn_anew_along_the_edge(ground: np.ndarray, rough: np.ndarray) -> None:
+    found = polished(view_of(picture(ground), np.zeros(SHAPE, bool)).lab, rough)
+    assert overlap(rough, disc()) < 0.96
+    assert overlap(found, disc()) > 0.975
+
+
+def test_colours_are_parted_from_a_rough_guess() -> None:
+    mosaic = mosaic_of(view_of(picture(checks()), np.zeros(SHAPE, bool)).lab)
+    frame = (X < 8) | (X > 311) | (Y < 8) | (Y > 231)
+    assert overlap(cut(mosaic, disc(165, 120, 45), frame), disc()) > 0.9
 
 
 # --- sets of colours ------------------------------------------------------------------------
@@ -147,8 +170,6 @@ def test_histograms_are_alike_or_not() -> None:
     assert one.sum() == pytest.approx(1.0)
     assert likeness(one, one) == pytest.approx(1.0)
     assert likeness(one, other) == 0.0
-    assert (likelier(cell, one, other)[:2] > 1).all()
-    assert (likelier(cell, one, other)[2:] < -1).all()
 
 
 def test_extreme_colours_have_a_cell() -> None:
