@@ -212,7 +212,7 @@ def test_the_fit_is_on_the_screen(samples: Path) -> None:
 
 @pytest.mark.slow
 def test_finite_elements_correct_the_choice(samples: Path, tmp_path: Path) -> None:
-    options = ("--json", "--quiet")
+    options = ("--no-grip", "--json", "--quiet")
     first = json.loads(call("design", samples / REST, "--no-refine", *options).stdout)
     result = call("design", samples / REST, *options, "--force")
     assert result.exit_code == 0, result.stderr
