@@ -14,6 +14,26 @@ MOST_FINGERS, MOST_FRICTION = 12, 2.0
 
 
 @dataclass(frozen=True)
+class OnObject:
+    """How a design is pressed on its object.
+
+    Attributes
+    ----------
+    pressed : bool
+        Whether finite elements press the verified actuator on it.
+    force_N : float or None
+        Normal force to work with; None for the least expected misfit.
+    solid, clearance_mm
+        As in `GripRequest`.
+    """
+
+    pressed: bool = True
+    force_N: float | None = None
+    solid: Solid = "auto"
+    clearance_mm: float = 0.0
+
+
+@dataclass(frozen=True)
 class GripRequest:
     """What is asked of a finger on its object.
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path, PurePath
 
 from profiletool.records.built import BuildErrors
@@ -226,9 +227,10 @@ GRIP = (
         "Coefficients of friction to tell the payload at (default: 0 to 1).", metavar="MU,...",
     ),
     Option("--fingers", "fingers", _COUNT, "Fingers around the object.", least=1),
-    _OBJECT,
+    replace(_OBJECT, help=f"{_OBJECT.help[:-2]}; default: as the design was made)."),
     Option(
-        "--clearance", "clearance_mm", _MM, "Gap that the profile keeps from the object, mm.",
+        "--clearance", "clearance_mm", _MM,
+        "Gap that the profile keeps from the object, mm (default: as the design was made).",
         least=0.0,
     ),
     Option(
