@@ -242,6 +242,11 @@ GRIP = (
         "Something else in place of the object, such as a load cell: plane:X,Y,DEG with its normal "
         "at DEG, cylinder:X,Y,R, sphere:X,Y,R; mm.", metavar="KIND:X,Y,NUMBER",
     ),
+    Option(
+        "--free", "free_N", _number(" N"),
+        "Weight of the object, N: let it go at every pressure, and tell where along its axis it "
+        "comes to rest between the fingers.", least=0.0, metavar="N",
+    ),
 )  # fmt: skip
 MODEL = tuple(row for row in DESIGN if row.path.startswith("model."))
 # Fields of other records and commands that messages name.
