@@ -140,7 +140,8 @@ class _Fall:
     def follow(self, found: Found) -> Released:
         """Go downhill with the obstacle until it rests, or has left the tube."""
         place, size, settlings = self._placed(np.zeros(len(self._load)), found), _STEP_MM, 0
-        fine, end, off = False, "lost", np.inf
+        fine, off = False, np.inf
+        end: End = "lost"
         for _ in range(_MOST):
             step = self._step(place)
             if step is None:
