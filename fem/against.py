@@ -10,6 +10,7 @@ import numpy as np
 
 from fem import blas
 from fem.approach import Approach
+from fem.arrays import FloatArray
 from fem.assembly import System
 from fem.body import Body
 from fem.contact import Contact, pressed_of
@@ -40,9 +41,7 @@ def solve_against(
     threads: int = 2,
     progress: Callable[[float], None] | None = None,
 ) -> Contacts:
-    """Press a tube against an obstacle.
-
-    The run goes on from the last free state on whose way the tube lies hardly in the obstacle.
+    """Press a tube against an obstacle, from the last free state that lies hardly in it on.
 
     Parameters
     ----------
@@ -174,11 +173,18 @@ class _Run:
         contact = self._contact
         contact.lift = max(0.0, self._approach.depth_at(pose))
         step, found = _MOVE_IN_MM, self.finder.find(pose, pressure, tolerance)
+        way: FloatArray | None = None  # per mm, of the last step
         while found is not None and (lift := contact.lift) > 0.0:
             contact.lift = max(0.0, lift - step)
-            moved = self.finder.find(found.pose, pressure, tolerance)
+            poses, rise = [found.pose], lift - contact.lift
+            if way is not None:
+                poses.append(self._chart.move(found.pose, rise * way))
+            best = min(poses, key=lambda pose: self.finder.potential(pose, pressure))
+            moved = self.finder.find(best, pressure, tolerance)
             if moved is not None:
-                found, step = moved, 2.0 * step
+                way = self._chart.difference(found.pose, moved.pose) / rise
+                found = moved
+                step = 2.0 * step if moved.factored <= _FEW else step
                 continue
             contact.lift, step = lift, 0.4 * step
             if step < _LEAST_IN_MM:
