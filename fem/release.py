@@ -109,9 +109,12 @@ class _Fall:
     def _motion(self, q: FloatArray) -> FloatArray:
         return np.asarray(q @ self._body.ways)
 
+    def _move_to(self, q: FloatArray) -> None:
+        self._contact.obstacle = Moved(self._obstacle, self._motion(q), self._body.about)
+
     def _at(self, q: FloatArray, pose: Pose, pressure: float, tolerance: float) -> _Place | None:
         """Find the tube's equilibrium with the obstacle at q."""
-        self._contact.obstacle = Moved(self._obstacle, self._motion(q), self._body.about)
+        self._move_to(q)
         found = self._finder.find(pose, pressure, tolerance)
         return None if found is None else self._placed(q, found)
 
@@ -133,9 +136,11 @@ class _Fall:
         left = border.slope - self._load
         values, vectors = np.linalg.eigh(border.curve - B @ solved[:-1].T)
         down = vectors.T @ (B @ solved[-1] - left)
+        off, stable = float(np.abs(left).max()) / self._share, bool(values[0] > -_SOFT)
+        if off < _BALANCE_N and not stable:  # on the top of a hill: off it
+            down[0] = np.copysign(_STEP_MM * values[0], down[0])
         q = vectors @ (down / np.maximum(np.abs(values), _SOFT))
-        off = float(np.abs(left).max()) / self._share
-        return _Step(off, values[0] > -_SOFT, q, -solved[-1] - q @ solved[:-1])
+        return _Step(off, stable, q, -solved[-1] - q @ solved[:-1])
 
     def follow(self, found: Found) -> Released:
         """Go downhill with the obstacle until it rests, or has left the tube."""
@@ -189,6 +194,7 @@ class _Fall:
         return not touching and not self._load.any()
 
     def _released(self, place: _Place, end: End, off: float) -> Released:
+        self._move_to(place.q)  # a step that led nowhere may have left it elsewhere
         x = place.found.pose.x
         pressed = pressed_of(self._contact, self._system.mesh, x)
         return Released(self._motion(place.q), end, off, pressed, x)
