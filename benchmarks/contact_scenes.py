@@ -33,7 +33,7 @@ SHARES = (0.7, 0.85, 1.0)  # of the pressure, reported in contact
 
 @dataclass(frozen=True)
 class Outcome:
-    """How one scene went; times and factorisations are those of the run in contact over the free.
+    """How one scene went.
 
     Attributes
     ----------
@@ -41,13 +41,18 @@ class Outcome:
     kind : {"converged", "named", "deep", "energy", "no free run", "crashed"}
     reason : str
     factorisations, seconds : float
+        Those of the run in contact over the free one's.
+    depth_mm, energy : float
+        Deepest point in the object, and the energy balance's largest error, over all states.
     """
 
     number: int
     kind: str
     reason: str
-    factorisations: float
-    seconds: float
+    factorisations: float = np.nan
+    seconds: float = np.nan
+    depth_mm: float = np.nan
+    energy: float = np.nan
 
 
 def finger(draw: np.random.Generator) -> tuple[Actuator, float]:
@@ -86,15 +91,15 @@ def run(task: tuple[int, int]) -> Outcome:
     try:
         free = solve(actuator, [0.1 * k * most for k in range(1, 11)], threads=1)
     except FemError as error:
-        return Outcome(number, "no free run", str(error), np.nan, np.nan)
+        return Outcome(number, "no free run", str(error))
     between = time.process_time()
     if not free.converged:
-        return Outcome(number, "no free run", "critical", np.nan, np.nan)
+        return Outcome(number, "no free run", "critical")
     line = free.states[8].shape.facing[:, [2, 1]]
     try:
         held = solve_against(free, placed(line, draw), [s * most for s in SHARES], threads=1)
     except Exception as error:  # whatever it is, it is the finding
-        return Outcome(number, "crashed", repr(error), np.nan, np.nan)
+        return Outcome(number, "crashed", repr(error))
     took = (time.process_time() - between) / (between - begun)
     kind, reason = ("converged", "") if held.failure is None else ("named", held.failure)
     deepest = max((touch.depth for touch in held.touches), default=0.0)
@@ -103,7 +108,8 @@ def run(task: tuple[int, int]) -> Outcome:
         kind, reason = "deep", f"{deepest:.3f} mm"
     elif not energy <= ENERGY:
         kind, reason = "energy", f"{energy:.1e}"
-    return Outcome(number, kind, reason, held.factorisations / free.factorisations, took)
+    factored = held.factorisations / free.factorisations
+    return Outcome(number, kind, reason, factored, took, deepest, energy)
 
 
 def main() -> int:
@@ -114,19 +120,25 @@ def main() -> int:
     parser.add_argument("--workers", type=int, default=1)
     given = parser.parse_args()
     tasks = [(given.seed, number) for number in range(given.scenes)]
-    with ProcessPoolExecutor(given.workers) as pool:
-        outcomes = list(pool.map(run, tasks))
     print(machine())
-    for one in outcomes:
-        if one.kind != "converged":
-            print(f"{one.number:4d}  {one.kind}: {one.reason}")
+    outcomes = []
+    with ProcessPoolExecutor(given.workers) as pool:
+        for one in pool.map(run, tasks):
+            outcomes.append(one)
+            print(
+                f"{one.number:4d}  {one.kind}: depth {one.depth_mm:.3f} mm, "
+                f"energy {one.energy:.1e}, time {one.seconds:.2f} {one.reason}",
+                flush=True,
+            )
     counts = Counter(one.kind for one in outcomes)
     print(table(["ended", "scenes"], [[kind, str(count)] for kind, count in counts.most_common()]))
     ran = [one for one in outcomes if np.isfinite(one.seconds)]
     if ran:
         print(
             f"in contact over free, median: time {np.median([o.seconds for o in ran]):.2f}, "
-            f"factorisations {np.median([o.factorisations for o in ran]):.2f}"
+            f"factorisations {np.median([o.factorisations for o in ran]):.2f}; "
+            f"depth at most {max(o.depth_mm for o in ran):.3f} mm, "
+            f"energy off by at most {max(o.energy for o in ran):.1e}"
         )
     return 1 if counts["crashed"] else 0
 

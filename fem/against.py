@@ -10,12 +10,15 @@ import numpy as np
 
 from fem import blas
 from fem.approach import Approach
+from fem.arrays import FloatArray
 from fem.assembly import System
+from fem.body import Body
 from fem.contact import Contact, pressed_of
 from fem.downhill import Finder, Found
 from fem.equilibrium import Equilibrium, lagrange, last_work
 from fem.gap import Obstacle
 from fem.grasp import Contacts, Touch
+from fem.release import Released, let_go
 from fem.sections import Chart, Pose
 from fem.solution import Solution, State, state_of
 
@@ -34,12 +37,11 @@ def solve_against(
     *,
     tolerance: float = _ASKED,
     settle: bool = True,
+    body: Body | None = None,
     threads: int = 2,
     progress: Callable[[float], None] | None = None,
 ) -> Contacts:
-    """Press a tube against an obstacle.
-
-    The run goes on from the last free state on whose way the tube lies hardly in the obstacle.
+    """Press a tube against an obstacle, from the last free state that lies hardly in it on.
 
     Parameters
     ----------
@@ -53,6 +55,8 @@ def solve_against(
         Residual of reported states over the pressure's forces.
     settle : bool
         Whether multipliers take the depth away that the penalty leaves, some hundredths of a mm.
+    body : Body, optional
+        Lets the obstacle go at every reported pressure; it is held in its place until then.
     threads : {1, 2}
     progress : callable, optional
         Takes the pressure reached so far, MPa.
@@ -65,7 +69,8 @@ def solve_against(
     Raises
     ------
     ValueError
-        When pressures make no sense, or half a tube meets an obstacle that is not symmetric.
+        When pressures make no sense, half a tube meets an obstacle that is not symmetric, or one
+        with friction is to be let go.
     """
     asked = sorted({float(p) for p in pressures})
     if not asked or not all(np.isfinite(asked)) or asked[0] <= 0.0:
@@ -73,23 +78,26 @@ def solve_against(
     begun = time.perf_counter()
     touching = contact if isinstance(contact, Contact) else Contact(contact)
     touching.offset = touching.hold = None
+    if body is not None and touching.friction > 0.0:
+        raise ValueError("an obstacle with friction cannot be let go")
     with blas.one_thread():
-        run = _Run(free, touching, tolerance, threads, settle=settle)
+        run = _Run(free, touching, body, tolerance, threads, settle=settle)
         try:
             run.go(asked, progress)
         finally:
             run.system.close()
     return Contacts(
         free, tuple(run.states), tuple(run.touches), run.first_touch, run.failure,
-        tuple(run.finder.history), time.perf_counter() - begun,
+        tuple(run.finder.history), time.perf_counter() - begun, tuple(run.released),
     )  # fmt: skip
 
 
 class _Run:
     def __init__(
-        self, free: Solution, contact: Contact, tolerance: float, threads: int, *, settle: bool
-    ) -> None:
-        self._free, self._contact = free, contact
+        self, free: Solution, contact: Contact, body: Body | None, tolerance: float, threads: int,
+        *, settle: bool,
+    ) -> None:  # fmt: skip
+        self._free, self._contact, self._body = free, contact, body
         self._tolerance, self._settle = tolerance, settle
         self._mesh = free.mesh
         self.system = System(free.mesh, threads, [contact], single=True)
@@ -98,6 +106,7 @@ class _Run:
         self.finder = Finder(self.system, self._chart, contact)
         self.states: list[State] = []
         self.touches: list[Touch] = []
+        self.released: list[Released] = []
         self.failure: str | None = None
         self.first_touch: float | None = None
         self._last: list[Found] = []
@@ -164,11 +173,18 @@ class _Run:
         contact = self._contact
         contact.lift = max(0.0, self._approach.depth_at(pose))
         step, found = _MOVE_IN_MM, self.finder.find(pose, pressure, tolerance)
+        way: FloatArray | None = None  # per mm, of the last step
         while found is not None and (lift := contact.lift) > 0.0:
             contact.lift = max(0.0, lift - step)
-            moved = self.finder.find(found.pose, pressure, tolerance)
+            poses, rise = [found.pose], lift - contact.lift
+            if way is not None:
+                poses.append(self._chart.move(found.pose, rise * way))
+            best = min(poses, key=lambda pose: self.finder.potential(pose, pressure))
+            moved = self.finder.find(best, pressure, tolerance)
             if moved is not None:
-                found, step = moved, 2.0 * step
+                way = self._chart.difference(found.pose, moved.pose) / rise
+                found = moved
+                step = 2.0 * step if moved.factored <= _FEW else step
                 continue
             contact.lift, step = lift, 0.4 * step
             if step < _LEAST_IN_MM:
@@ -265,6 +281,8 @@ class _Run:
             return False
         self.states.append(state)
         self.touches.append(Touch(pressed, pressed.depth, force, clamp))
+        if self._body is not None:
+            self.released.append(let_go(self.finder, self.system, self._contact, found, self._body))
         return True
 
     def _fail(self, pressure: float) -> None:

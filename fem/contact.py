@@ -121,15 +121,38 @@ class Contact:
             slope,
         )
 
+    def derivatives(
+        self, points: FloatArray, area: FloatArray, offset: FloatArray | float
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Energy at points (..., 3) without friction, and its first and second derivative there.
+
+        Parameters
+        ----------
+        points : (..., 3) mm
+        area : (...) mm^2
+        offset : (...) mm
+            See `Contact`; 0 where there is none.
+
+        Returns
+        -------
+        energy : (...) N mm
+        push : (..., 3) N
+        moduli : (..., 3, 3) N/mm
+        """
+        gap = self.obstacle.gap(points.reshape(-1, 3))
+        psi, slope, curve = self._law(offset - gap.distance.reshape(area.shape) - self.lift)
+        weight, normal = self.penalty * area, gap.normal.reshape(points.shape)
+        push = (weight * slope)[..., None]
+        moduli = (weight * curve)[..., None, None] * normal[..., :, None] * normal[..., None, :]
+        moduli -= push[..., None] * gap.bend.reshape(*points.shape, 3)
+        return weight * psi, -push * normal, moduli
+
     def energy(self, mesh: Mesh, x: FloatArray) -> float:
         """Energy that contact adds at nodes x (layers + 1, ring + mid, 3), N mm."""
         surface = Surface.of(mesh)
         points = surface.points(x.reshape(-1, 3))
-        gap = self.obstacle.gap(points.reshape(-1, 3))
-        depth = -gap.distance.reshape(surface.area.shape) - self.lift
-        if self.offset is not None:
-            depth = depth + self.offset
-        energy = float((self.penalty * surface.area * self._law(depth)[0]).sum())
+        offset = 0.0 if self.offset is None else self.offset
+        energy = float(self.derivatives(points, surface.area, offset)[0].sum())
         if self.hold is None:
             return energy
         return energy + float((surface.area * self.hold.respond(points)[0]).sum())
@@ -226,19 +249,12 @@ class _Item:
         faces = np.nonzero(near.any(axis=2))  # (layer, around)
         if not faces[0].size:
             return
-        points = points[faces]  # (f, q, 3)
-        gap = contact.obstacle.gap(points.reshape(-1, 3))
-        depth = -gap.distance.reshape(points.shape[:2]) - contact.lift
-        if contact.offset is not None:
-            depth = depth + contact.offset[layers][faces]
-        weight = contact.penalty * surface.area[layers][faces]  # (f, q)
-        psi, slope, curve = contact._law(depth)
-        batch.sums.energy += float((weight * psi).sum())
-        normal = gap.normal.reshape(points.shape)
-        push = -(weight * slope)[..., None] * normal
+        points, area = points[faces], surface.area[layers][faces]  # (f, q, 3), (f, q)
+        offset = 0.0 if contact.offset is None else contact.offset[layers][faces]
+        energy, push, moduli = contact.derivatives(points, area, offset)
+        batch.sums.energy += float(energy.sum())
         held = None if contact.hold is None else contact.hold.at(layers, faces)
         if held is not None:
-            area = surface.area[layers][faces]
             cost, drag, hinder = held.respond(points)
             batch.sums.energy += float((area * cost).sum())
             push += area[..., None] * drag
@@ -246,9 +262,6 @@ class _Item:
         batch.add_forces(surface.nodes[layers][faces], np.moveaxis(forces, -1, 0))
         if batch.skin is None:
             return
-        bend = gap.bend.reshape(*points.shape, 3)
-        moduli = (weight * curve)[..., None, None] * normal[..., :, None] * normal[..., None, :]
-        moduli -= (weight * slope)[..., None, None] * bend
         if held is not None:
             moduli += area[..., None, None] * hinder
         pairs = (surface.N[:, :, None] * surface.N[:, None, :]).reshape(len(surface.N), -1)

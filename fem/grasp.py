@@ -8,6 +8,7 @@ from fem.arrays import FloatArray
 from fem.contact import Pressed
 from fem.errors import Attempt
 from fem.mesh import Mesh
+from fem.release import Released
 from fem.solution import Solution, State
 
 
@@ -50,6 +51,8 @@ class Contacts:
         Pressure at which the free tube comes to the obstacle, MPa; None where it does not.
     failure : str or None
         Why pressures are missing.
+    released : tuple of Released
+        What became of the obstacle that was let go in each state; empty where it stays.
     history : tuple of Attempt
     seconds : float
     """
@@ -61,6 +64,7 @@ class Contacts:
     failure: str | None
     history: tuple[Attempt, ...]
     seconds: float
+    released: tuple[Released, ...] = ()
 
     @property
     def mesh(self) -> Mesh:

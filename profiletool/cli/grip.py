@@ -51,9 +51,11 @@ def grip(
         from profiletool.verify.grip import run_grip
 
         own = {row.field: options.pop(row.field) for row in GRIP}
-        asked = GripRequest(**{name: value for name, value in own.items() if value is not None})
         file = design_file(file)
         design = in_tube(load_design(file), options.pop("tube"))
+        given = {name: value for name, value in own.items() if value is not None}
+        kept = {"solid": design.grip.solid, "clearance_mm": design.grip.clearance_mm}
+        asked = GripRequest(**kept | given)
         for note in changed_notes(design):
             speaker(quiet)(f"note: {note}")
         design = replace(design, model=model_of(options, design.model))

@@ -162,6 +162,9 @@ def _check(design: Design, file: str) -> None:
         law_of(tube.rubber, design.model.nu)
     except ValueError as error:
         raise UnreadableInput(f"{file}: tube.rubber: {error}") from error
+    force, clearance = design.grip.force_N, design.grip.clearance_mm
+    if not ((force is None or 0.0 < force <= 1e4) and 0.0 <= clearance <= 1e4):
+        raise UnreadableInput(f"{file}: grip: no force and clearance can be so")
     if not design.joints:
         raise UnreadableInput(f"{file} has no joints")
     end = 0.0

@@ -12,6 +12,7 @@ from profiletool.errors import UnreadableInput
 from profiletool.records.built import Built, BuiltMisfit, SectorThreads, TrimPoint
 from profiletool.records.clamp import Clamp
 from profiletool.records.frames import Pose
+from profiletool.records.grip_request import OnObject
 from profiletool.records.model import ModelInputs
 from profiletool.records.neighbour import Neighbour
 from profiletool.records.side import Side
@@ -214,10 +215,7 @@ class Design:
 
     Attributes
     ----------
-    source : Source
-    tube : Tube
-    gauze : Gauze
-    formula : FormulaRef
+    source, tube, gauze, formula : Source, Tube, Gauze, FormulaRef
     pressure_bar : float
         Operating pressure, one for the whole tube.
     joints : tuple of Joint
@@ -254,6 +252,7 @@ class Design:
         Digest of all that finite elements verified; see `profiletool.records.seal`.
     neighbours : tuple of Neighbour
         Choices near the chosen one, that one first; empty where joints were not chosen all at once.
+    grip : OnObject
     """
 
     source: Source
@@ -278,6 +277,7 @@ class Design:
     clamp: Clamp = field(default_factory=Clamp)
     seal: str | None = None
     neighbours: tuple[Neighbour, ...] = ()
+    grip: OnObject = field(default_factory=OnObject)
 
     @property
     def thread_rad(self) -> float:

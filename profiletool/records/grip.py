@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 
@@ -34,6 +35,29 @@ class Pad:
         """Mean pressure, each point with its force."""
         size = np.linalg.norm(self.force, axis=1)
         return float(size @ self.kPa / size.sum()) if size.any() else 0.0
+
+
+@dataclass(frozen=True)
+class LetGo:
+    """The object, let go at one pressure: fingers all around leave it its axis to move along.
+
+    Attributes
+    ----------
+    moved_mm : float
+        Upward in the picture, so far as it was followed.
+    end : {"rests", "leaves", "lost"}
+        Whether it comes to rest, or leaves the fingers; lost where no equilibrium of the finger
+        was found on its way.
+    normal_N : float
+        Sum of all normal forces of one finger there.
+    unbalanced_N : float
+        Force along the axis that is left over, of one finger and its share of the weight.
+    """
+
+    moved_mm: float
+    end: Literal["rests", "leaves", "lost"]
+    normal_N: float
+    unbalanced_N: float
 
 
 @dataclass(frozen=True)
@@ -72,6 +96,8 @@ class GripState:
     air_ml : float
         That went in since rest.
     pad : Pad
+    let_go : LetGo or None
+        None where the object stays.
     """
 
     pressure_bar: float
@@ -92,6 +118,7 @@ class GripState:
     theta_deg: tuple[float, ...]
     air_ml: float
     pad: Pad
+    let_go: LetGo | None = None
 
 
 @dataclass(frozen=True)

@@ -111,6 +111,10 @@ def request_again(
         model=design.model,
         given=profile,
         refine=refine,
+        grip=design.grip.pressed,
+        grip_N=design.grip.force_N,
+        solid=design.grip.solid,
+        clearance_mm=design.grip.clearance_mm,
     )
     return asked if refine else replace(asked, alpha_step_deg=0.0, place_step_mm=0.0)
 

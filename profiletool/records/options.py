@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path, PurePath
 
 from profiletool.records.built import BuildErrors
@@ -231,9 +232,10 @@ GRIP = (
         "Coefficients of friction to tell the payload at (default: 0 to 1).", metavar="MU,...",
     ),
     Option("--fingers", "fingers", _COUNT, "Fingers around the object.", least=1),
-    _OBJECT,
+    replace(_OBJECT, help=f"{_OBJECT.help[:-2]}; default: as the design was made)."),
     Option(
-        "--clearance", "clearance_mm", _MM, "Gap that the profile keeps from the object, mm.",
+        "--clearance", "clearance_mm", _MM,
+        "Gap that the profile keeps from the object, mm (default: as the design was made).",
         least=0.0,
     ),
     Option(
@@ -244,6 +246,11 @@ GRIP = (
         "--against", "against", ValueKind(str, str),
         "Something else in place of the object, such as a load cell: plane:X,Y,DEG with its normal "
         "at DEG, cylinder:X,Y,R, sphere:X,Y,R; mm.", metavar="KIND:X,Y,NUMBER",
+    ),
+    Option(
+        "--free", "free_N", _number(" N"),
+        "Weight of the object, N: let it go at every pressure, and tell where along its axis it "
+        "comes to rest between the fingers.", least=0.0, metavar="N",
     ),
 )  # fmt: skip
 MODEL = tuple(row for row in DESIGN if row.path.startswith("model."))

@@ -12,6 +12,7 @@ from dataclasses import asdict, replace
 from typing import Any
 
 from profiletool.records.design import Design
+from profiletool.records.grip_request import OnObject
 
 _DECIMALS = 6  # a nanometre; keeps the last bits of the arithmetic out of the file
 
@@ -26,8 +27,9 @@ def seal_of(design: Design) -> str:
     """Digest of all values of a design but the seal: SHA-256 of their canonical JSON."""
     values = values_of(design)
     del values["seal"]
-    if not values["neighbours"]:  # as in files from before there were any
-        del values["neighbours"]
+    for name, none in (("neighbours", []), ("grip", asdict(OnObject()))):
+        if values[name] == none:  # as in files from before there were any
+            del values[name]
     text = json.dumps(values, sort_keys=True, separators=(",", ":"), allow_nan=False)
     return hashlib.sha256(text.encode()).hexdigest()
 

@@ -52,6 +52,9 @@ class PressureSetting:
         Joints that bend otherwise than the others let expect.
     beyond : bool
         Whether it was measured beyond the trim table, so that the pressure is but the next to try.
+    operate_bar : float or None
+        To work at against the object; None where the design says nothing of it, or it was measured
+        beyond the table.
     notes : tuple of str
         What its user should know.
     """
@@ -65,4 +68,5 @@ class PressureSetting:
     dead_bar: float = 0.0
     joints_off: tuple[int, ...] = ()
     beyond: bool = False
+    operate_bar: float | None = None
     notes: tuple[str, ...] = ()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +12,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from profiletool.profile.shape_csv import shape_csv
-from profiletool.records.grip import Grip, GripState, Payload
+from profiletool.records.grip import Grip, GripState, LetGo, Payload
 from profiletool.records.grip_request import GripRequest
 from profiletool.records.units import FloatArray
 from profiletool.report.figure import WIDE_IN, legend_below, panels, png, titled
@@ -65,6 +66,7 @@ def grip_json(found: Grip) -> str:
         "clamp_N": [[round(value, _DECIMALS) for value in state.clamp_N] for state in states],
         "first_touch_bar": None if first is None else round(first, _DECIMALS),
         "object": found.solid,
+        "let_go": _let_go_tree(states),
         "payload_N": None if payload is None else _payload_tree(payload),
         "energy_error": float(f"{max((s.energy_error for s in states), default=0.0):.4g}"),
         "factorisations": found.factorisations,
@@ -73,6 +75,18 @@ def grip_json(found: Grip) -> str:
         **({} if found.failure is None else {"failure": found.failure}),
     }
     return json.dumps(tree, allow_nan=False) + "\n"
+
+
+def _let_go_tree(states: Sequence[GripState]) -> dict[str, list[Any]] | None:
+    """Tell where the object goes: null in ``moved_mm`` where it does not come to rest."""
+    let = [state.let_go for state in states if state.let_go is not None]
+    if not let:
+        return None
+    return {
+        "end": [one.end for one in let],
+        "moved_mm": [round(one.moved_mm, _DECIMALS) if one.end == "rests" else None for one in let],
+        "normal_N": [round(one.normal_N, _DECIMALS) for one in let],
+    }
 
 
 def _payload_tree(payload: Payload) -> dict[str, Any]:
@@ -124,11 +138,24 @@ def grip_text(found: Grip, asked: GripRequest) -> str:
         last = found.states[-1]
         by_joint = ", ".join(f"{force:.2f}" for force in last.joint_normal_N)
         lines.append(f"normal force joint by joint at {last.pressure_bar:.2f} bar: {by_joint} N")
+    lines += [_let_go_line(s.let_go, s.pressure_bar) for s in found.states if s.let_go is not None]
     if found.payload is not None:
         lines += _payload_lines(found.payload)
     lines += [f"note: {text}" for text in cautions(found, asked.max_contact_kpa)]
     lines.append(f"{found.factorisations} factorisations, {found.seconds:.1f} s")
     return "\n".join(lines) + "\n"
+
+
+def _let_go_line(let: LetGo, bar: float) -> str:
+    """Say where the object goes that is let go at a pressure."""
+    way = "up" if let.moved_mm > 0.0 else "down"
+    if let.end == "rests":
+        went = f"moves {abs(let.moved_mm):.2f} mm {way} and rests, {let.normal_N:.2f} N on a finger"
+    elif let.end == "leaves":
+        went = f"leaves the fingers, {way}"
+    else:
+        went = f"goes {way}; no equilibrium was found beyond {abs(let.moved_mm):.1f} mm"
+    return f"let go at {bar:.2f} bar, it {went}"
 
 
 def _met(found: Grip) -> str:

@@ -13,6 +13,8 @@ def setting_text(found: PressureSetting) -> str:
         f"set {found.pressure_bar:.2f} bar (planned: {found.planned_bar:.2f}): this actuator is "
         f"{found.stiffness:.3f} times as stiff as planned"
     ]
+    if found.operate_bar is not None:
+        lines.append(f"against its object, work at {found.operate_bar:.2f} bar")
     if found.off_mm is not None:
         lines.append(f"its tip lies {found.off_mm:.1f} mm off the way of the planned one")
     if found.rms_deg is not None:
@@ -31,6 +33,7 @@ def setting_json(found: PressureSetting) -> str:
     tree = {
         "pressure_bar": found.pressure_bar,
         "planned_bar": found.planned_bar,
+        "operate_bar": found.operate_bar,
         "stiffness": round(found.stiffness, 4),
         "off_mm": None if off is None else round(off, 3),
         "rms_deg": None if rms is None else round(rms, 3),

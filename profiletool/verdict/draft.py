@@ -16,6 +16,7 @@ from profiletool.records.design import Design, Fit, FormulaRef, Gauze, Source, T
 from profiletool.records.fe import FeState
 from profiletool.records.frames import Shape
 from profiletool.records.grip import Grip
+from profiletool.records.grip_request import OnObject
 from profiletool.records.profile import Profile
 from profiletool.records.request import Request
 from profiletool.records.units import FloatArray
@@ -136,5 +137,6 @@ def _design(
         method=request.method,
         model=request.model,
         clamp=spec.clamp,
+        grip=OnObject(request.grip, request.grip_N, request.solid, request.clearance_mm),
     )
     return replace(design, threads=threads_of(design))

@@ -9,23 +9,25 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from fem.against import solve_against
+from fem.body import Body
 from fem.contact import ORDERS
 from fem.element import gauss
 from fem.gap import Obstacle
 from fem.grasp import Contacts, Touch
+from fem.release import Released
 from fem.solution import Solution, State
 from fem.solver import solve
 from profiletool.joints.misfit import misfit_to
 from profiletool.records.design import Design
 from profiletool.records.frames import base_axes
-from profiletool.records.grip import Grip, GripState, Pad
+from profiletool.records.grip import Grip, GripState, LetGo, Pad
 from profiletool.records.grip_request import GripRequest
 from profiletool.records.side import side_sign
 from profiletool.records.units import BAR_PER_MPA, FloatArray
 from profiletool.verify.lines import Placement, placed_shape
 from profiletool.verify.payload import payload_of
 from profiletool.verify.run import pressures_to
-from profiletool.verify.solid import given_obstacle, object_of
+from profiletool.verify.solid import body_of, given_obstacle, object_of
 from profiletool.verify.tube import actuator_of
 
 MARGINS = (1.0, 1.05, 1.1, 1.15, 1.2)  # times the design's pressure, where nothing else is asked
@@ -62,9 +64,10 @@ def run_grip(
     bars = tuple(sorted(asked.pressures_bar)) or tuple(
         round(share * design.pressure_bar, 4) for share in MARGINS
     )
+    body = None if asked.free_N is None else body_of(design, asked.free_N, asked.fingers)
     free_bar = min(bars[-1], design.pressure_bar)
     free = solve(actuator_of(design), [p / BAR_PER_MPA for p in pressures_to(free_bar)])
-    held = pressed(free, obstacle, bars, progress)
+    held = pressed(free, obstacle, bars, progress, body=body)
     return grip_of(design, target, held, made, asked)
 
 
@@ -75,6 +78,7 @@ def pressed(
     progress: Progress | None = None,
     *,
     settle: bool = True,
+    body: Body | None = None,
 ) -> Contacts:
     """Press a finger on its object at pressures in bar; see `fem.against`."""
 
@@ -83,8 +87,9 @@ def pressed(
             progress(BAR_PER_MPA * pressure)
 
     return solve_against(
-        free, obstacle, [bar / BAR_PER_MPA for bar in bars], settle=settle, progress=told
-    )
+        free, obstacle, [bar / BAR_PER_MPA for bar in bars], settle=settle, body=body,
+        progress=told,
+    )  # fmt: skip
 
 
 def grip_of(
@@ -95,6 +100,12 @@ def grip_of(
     states = tuple(
         place.state(state, touch) for state, touch in zip(held.states, held.touches, strict=True)
     )
+    if held.released:
+        up = body_of(design, 0.0, 1).ways[0]
+        states = tuple(
+            replace(state, let_go=place.let_go(let, float(up @ let.motion)))
+            for state, let in zip(states, held.released, strict=True)
+        )
     first = held.first_touch
     found = Grip(
         solid=solid,
@@ -156,6 +167,12 @@ class _Place:
             air_ml=1e-3 * (state.volume - self._rest),
             pad=pad,
         )
+
+    def let_go(self, released: Released, moved_mm: float) -> LetGo:
+        """Read what became of the object."""
+        pressed, twice = released.pressed, 2.0 if self._mesh.half else 1.0
+        push = (pressed.area * pressed.pressure)[self._mesh.segment > 0]
+        return LetGo(moved_mm, released.end, twice * float(push.sum()), released.unbalanced)
 
     def _angles(self, state: State) -> tuple[float, ...]:
         """Angles of the joints, deg: beyond half a turn they go on."""

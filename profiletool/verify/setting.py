@@ -99,7 +99,7 @@ def by_tip(design: Design, tip_mm: tuple[float, float], at_bar: float) -> Pressu
             "by itself, or the clamp is; the angles of all joints would tell"
         )
     found = PressureSetting(0.0, curves.planned, at_bar / bar, off_mm=off, notes=tuple(notes))
-    return _set(curves, found, outside)
+    return _set(design, curves, found, outside)
 
 
 def by_angles(design: Design, readings: Sequence[AngleReading]) -> PressureSetting:
@@ -154,7 +154,7 @@ def by_angles(design: Design, readings: Sequence[AngleReading]) -> PressureSetti
     found = PressureSetting(
         0.0, curves.planned, stiffness, rms_deg=rms, joints_off=tuple(apart), notes=tuple(notes)
     )
-    return _set(curves, found, outside)
+    return _set(design, curves, found, outside)
 
 
 def _nearest(curves: Curves, tip: FloatArray) -> tuple[float, int]:
@@ -175,7 +175,7 @@ def _nearest(curves: Curves, tip: FloatArray) -> tuple[float, int]:
     return float(near.x), outside
 
 
-def _set(curves: Curves, found: PressureSetting, outside: int) -> PressureSetting:
+def _set(design: Design, curves: Curves, found: PressureSetting, outside: int) -> PressureSetting:
     """Round the pressure to set, and refuse one that finite elements have not seen.
 
     ``outside``: +1 where it was measured beyond the table's top, -1 below its first row.
@@ -196,4 +196,13 @@ def _set(curves: Curves, found: PressureSetting, outside: int) -> PressureSettin
             f"it was measured beyond the trim table ({low:.2f} to {top:.2f} bar): {bound} "
             f"{bar:.2f} bar fits; set that, and measure again"
         )
-    return replace(found, pressure_bar=bar, beyond=bool(outside), notes=tuple(notes))
+    operate = None if outside else on_object(design, found.stiffness)
+    return replace(
+        found, pressure_bar=bar, beyond=bool(outside), operate_bar=operate, notes=tuple(notes)
+    )
+
+
+def on_object(design: Design, stiffness: float, dead_bar: float = 0.0) -> float | None:
+    """Pressure to set against the object on an actuator of a stiffness, bar."""
+    at = design.operate_bar
+    return None if at is None else round(stiffness * at + dead_bar, 2)

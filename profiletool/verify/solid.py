@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fem.body import Body
 from fem.gap import Cylinder, Obstacle, Plane, Sphere
 from fem.outline import Extruded, Outline, Revolved
 from profiletool.errors import UsageError
@@ -15,6 +16,7 @@ from profiletool.records.side import side_sign
 from profiletool.records.units import FloatArray
 
 _KINDS = ("plane", "cylinder", "sphere")
+_LEVEL = 1e-9
 _OFF_AXIS_MM = 1.0  # beyond its axis that a turned profile may reach
 
 
@@ -91,6 +93,25 @@ def given_obstacle(design: Design, text: str) -> tuple[Obstacle, str]:
     if kind == "sphere":
         return Sphere(point, last), kind
     return Cylinder(point, np.array([1.0, 0.0, 0.0]), last), kind
+
+
+def body_of(design: Design, weight_N: float, fingers: int) -> Body:
+    """Give an object between equal fingers its freedom: along its axis, with its share of weight.
+
+    Raises
+    ------
+    UsageError
+        Gravity pulls across the axis.
+    """
+    pull = design.model.pull(side_sign(design.source.side)) or (0.0, -1.0)
+    if abs(pull[0]) > _LEVEL:
+        raise UsageError(
+            "`free_N`: with `gravity` across the object's axis the fingers do not bear the same; "
+            "let it pull down or up"
+        )
+    along, away = _Frame(design).turned([0.0, 1.0])
+    up = np.array([away, along, 0.0])
+    return Body(up[None], pull[1] * weight_N / fingers * up, np.zeros(3))
 
 
 class _Frame:

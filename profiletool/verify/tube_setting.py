@@ -16,6 +16,7 @@ from profiletool.records.setting import PressureSetting
 from profiletool.records.side import side_sign
 from profiletool.records.units import FloatArray
 from profiletool.verify.run import inflate, reason, shortly
+from profiletool.verify.setting import on_object
 from profiletool.verify.tube import actuator_of
 
 _ABOUT = np.array([0.84, 0.9, 0.96, 1.02, 1.08, 1.14])  # of a guess: where the states are
@@ -53,8 +54,9 @@ def by_tube(design: Design, tube: CalibratedTube, target: FloatArray) -> Pressur
         if bars[0] < bar - _STEP_BAR and bar + _STEP_BAR < bars[-1]:
             dead = tube.dead_bar
             return PressureSetting(
-                round(bar + dead, 2), planned, bar / planned, fit_mm=fit, dead_bar=round(dead, 3)
-            )
+                round(bar + dead, 2), planned, bar / planned, fit_mm=fit, dead_bar=round(dead, 3),
+                operate_bar=on_object(design, bar / planned, dead),
+            )  # fmt: skip
         guess = bar
     raise Infeasible(
         f"no pressure about the {planned:.2f} bar planned brings this tube onto the profile: "

@@ -43,8 +43,8 @@ def test_from_the_tip(file: Path) -> None:
     ]
     told = json.loads(call("trim", file, "--tip", at(1.95), "--at", PLANNED, "--json").stdout)
     assert list(told) == [
-        "pressure_bar", "planned_bar", "stiffness", "off_mm", "rms_deg", "joints_off", "beyond",
-        "notes",
+        "pressure_bar", "planned_bar", "operate_bar", "stiffness", "off_mm", "rms_deg",
+        "joints_off", "beyond", "notes",
     ]  # fmt: skip
     assert told["beyond"] is True
     assert told["pressure_bar"] == 1.52

@@ -33,6 +33,7 @@ def test_reads_back_what_it_wrote() -> None:
 def test_files_of_the_first_schema_are_read() -> None:
     new = (
         "built", "operate_bar", "model", "threads", "threads_off_mm", "trim", "clamp", "seal",
+        "neighbours", "grip",
     )  # fmt: skip
     tree = {key: value for key, value in TREE.items() if key not in new}
     older = from_json(json.dumps(tree | {"schema": "profiletool.design/1"}), "x")
@@ -44,6 +45,7 @@ def test_has_the_fields_of_the_contract() -> None:
         "schema", "source", "tube", "gauze", "formula", "pressure_bar", "joints", "base_pose",
         "fit", "feasible", "verified", "warnings", "method", "sensitivity", "built", "operate_bar",
         "trim", "model", "threads", "threads_off_mm", "clamp", "seal", "neighbours",
+        "grip",
     ]  # fmt: skip
     assert TREE["schema"] == "profiletool.design/3"
     assert list(TREE["joints"][0]) == [
@@ -117,6 +119,9 @@ def test_no_negative_zero_and_no_noise_in_the_last_bits() -> None:
         (changed(joints=joints(2, alpha_center_deg=1e300)), "joint 2: alpha_center_deg"),
         (changed(joints=joints(2, theta_response_deg="x")), r"joints\.1\.theta_response_deg"),
         (changed(sensitivity={"x": 1}), "sensitivity"),
+        (changed(grip={"solid": "round"}), r"grip\.solid"),
+        (changed(grip={"force_N": 0.0}), "grip: no force"),
+        (changed(grip={"side": "left"}), r"grip\.side: no key"),
     ],
 )
 def test_what_is_no_design_is_refused_by_name(text: str, says: str) -> None:

@@ -157,9 +157,9 @@ def test_an_older_file_cannot_be_known_to_be_verified() -> None:
     assert "nothing tells whether it was changed" in read.warnings[0]
 
 
-def test_a_file_from_before_there_were_neighbours_is_verified_still() -> None:
+def test_a_file_from_before_there_were_neighbours_and_grips_is_verified_still() -> None:
     tree = json.loads(to_json(sealed(replace(DESIGN, neighbours=()))))
-    del tree["neighbours"]
+    del tree["neighbours"], tree["grip"]
     read = from_json(json.dumps(tree), "x")
     assert proven(read)
     # To take them out of a file that has them is an edit, though.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import astuple, replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +14,7 @@ from profiletool.files.design_json import load_design
 from profiletool.joints.again import edited, plan_again, posed_of
 from profiletool.records.design import Design
 from profiletool.records.edit import Edit, edit_of
+from profiletool.records.grip_request import OnObject
 from profiletool.records.making import request_again
 from profiletool.subject.recall import profile_along
 from profiletool.verify.recompute import recomputed
@@ -91,3 +92,12 @@ def test_a_plan_has_the_joints_of_its_design(design: Design) -> None:
     strong = replace(design, pressure_bar=5.0)
     assert plan_again(strong, asked, profile, formula, lambda line: None).by == "formula"
     assert posed_of(design).chain.length == design.tube.length_mm
+
+
+def test_a_design_is_taken_up_again_with_its_own_object(design: Design) -> None:
+    line = np.column_stack([-np.linspace(0.0, 60.0, 601), np.zeros(601)])
+    own = OnObject(pressed=False, force_N=0.4, solid="extruded", clearance_mm=0.5)
+    asked = request_again(
+        replace(design, grip=own), profile_along(line, design, None), refine=False
+    )
+    assert (asked.grip, asked.grip_N, asked.solid, asked.clearance_mm) == astuple(own)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from profiletool.files.design_json import load_design
 from profiletool.records.built import BuildErrors, Built, BuiltMisfit
 from profiletool.records.design import Design, Joint
 from profiletool.records.frames import Pose, base_axes, outward
-from profiletool.records.grip import Grip
+from profiletool.records.grip import Grip, LetGo
 from profiletool.records.grip_request import GripRequest, Solid
 from profiletool.records.side import side_sign
 from profiletool.records.units import FloatArray
@@ -23,7 +24,7 @@ from profiletool.verify.fields import fields_of
 from profiletool.verify.grip import run_grip
 from profiletool.verify.operate import in_contact
 from profiletool.verify.run import Run, run_design
-from profiletool.verify.solid import given_obstacle, object_of
+from profiletool.verify.solid import body_of, given_obstacle, object_of
 
 
 @pytest.fixture(scope="module")
@@ -127,6 +128,46 @@ def test_a_grip_is_told(found: Grip) -> None:
     assert len(grip_csv(found).splitlines()) == 3
 
 
+def test_weight_pulls_along_the_axis_that_is_left_free(design: Design) -> None:
+    tilted = replace(design, base_pose=Pose(0.0, 0.0, 240.0))
+    body = body_of(tilted, 1.5, 3)
+    along, out = base_axes(np.radians(240.0), side_sign(design.source.side))
+    up = np.array([0.0, 1.0])
+    np.testing.assert_allclose(body.ways, [[up @ out, up @ along, 0.0]], atol=1e-12)
+    np.testing.assert_allclose(body.load, -0.5 * body.ways[0], atol=1e-12)
+    hung = replace(tilted, model=replace(design.model, gravity="up"))
+    np.testing.assert_allclose(body_of(hung, 1.5, 3).load, -body.load, atol=1e-12)
+    with pytest.raises(UsageError, match="`gravity` across"):
+        body_of(replace(tilted, model=replace(design.model, gravity="level")), 1.5, 3)
+
+
+def test_where_the_object_goes_is_told(found: Grip) -> None:
+    ends = (LetGo(-0.4, "rests", 0.5, 0.0), LetGo(9.0, "leaves", 0.0, 0.3))
+    states = tuple(replace(s, let_go=e) for s, e in zip(found.states, ends, strict=True))
+    gone = replace(found, states=states)
+    text = grip_text(gone, GripRequest(free_N=0.2))
+    assert "let go at 0.80 bar, it moves 0.40 mm down and rests, 0.50 N on a finger" in text
+    assert "let go at 0.90 bar, it leaves the fingers, up" in text
+    told = json.loads(grip_json(gone))["let_go"]
+    assert told == {"end": ["rests", "leaves"], "moved_mm": [-0.4, None], "normal_N": [0.5, 0.0]}
+    assert json.loads(grip_json(found))["let_go"] is None
+
+
+@pytest.mark.slow
+def test_an_object_that_is_let_go_is_in_balance(design: Design, target: FloatArray) -> None:
+    """Three fingers push it down, away from the clamp; hung upside down its weight pulls it in."""
+    hung = replace(design, model=replace(design.model, gravity="up"))
+    asked = GripRequest(pressures_bar=(0.9,), free_N=0.6)
+    (state,) = run_grip(hung, target, asked).states
+    assert -state.axial_N > 0.2  # a finger's share of the weight
+    let = state.let_go
+    assert let is not None
+    assert let.end == "rests"
+    assert let.moved_mm < -0.01
+    assert abs(let.unbalanced_N) < 1e-6
+    assert 0.2 <= let.normal_N < state.normal_N
+
+
 @pytest.mark.slow
 def test_the_finger_works_above_its_free_pressure(
     design: Design, run: Run, target: FloatArray
@@ -168,7 +209,8 @@ def test_the_finger_works_above_its_free_pressure(
     "values",
     [
         {"pressures_bar": (0.0,)}, {"friction": (-0.1,)}, {"fingers": 0}, {"clearance_mm": -1.0},
-        {"max_contact_kpa": 0.0},
+        {"max_contact_kpa": 0.0}, {"free_N": -1.0}, {"free_N": 1.0, "fingers": 1},
+        {"free_N": 1.0, "against": "plane:0,0,90"},
     ],
 )  # fmt: skip
 def test_requests_that_make_no_sense(values: dict[str, object]) -> None:

@@ -70,6 +70,13 @@ def read(stiffness: float, at: float, sigma: float = 1.0) -> list[AngleReading]:
     ]
 
 
+def test_the_pressure_on_the_object_is_scaled_as_the_other_one(design: Design) -> None:
+    held = sealed(replace(design, operate_bar=1.85))
+    assert by_angles(held, read(1.04, PLANNED)).operate_bar == pytest.approx(1.04 * 1.85, abs=5e-3)
+    assert by_angles(held, read(0.85, PLANNED)).operate_bar is None  # beyond the table
+    assert by_angles(design, read(1.04, PLANNED)).operate_bar is None
+
+
 @pytest.mark.parametrize("at", [PLANNED, 1.6, 1.8])
 @pytest.mark.parametrize("stiffness", [1.08, 1.0, 0.94])
 def test_from_the_tip_and_from_the_angles(design: Design, stiffness: float, at: float) -> None:
