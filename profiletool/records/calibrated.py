@@ -113,7 +113,7 @@ def with_tube(design: Design, tube: CalibratedTube | None) -> Design:
 
 
 def request_with(request: Request, tube: CalibratedTube | None) -> Request:
-    """Ask for a design in this tube, with the errors that are left after its calibration.
+    """Make a request one for this tube, with the errors that its calibration leaves.
 
     Where the errors of the build are the usual ones, rubber and wall are as sure as fitted.
     """

@@ -117,7 +117,8 @@ def edge_pairs(
     fits = known & (np.abs(excess) < _WIDTHS * width)
     worth = (one.score[:, :, None] + other.score[:, None, :]) * np.exp(-0.5 * (excess / width) ** 2)
     best = np.where(fits, worth, 0.0).reshape(len(excess), -1).argmax(axis=1)
-    wanted = fits.any(axis=(1, 2)) | ~known.any(axis=(1, 2))  # a line alone is taken as it is
+    alone = ~known.any(axis=(1, 2))  # a line whose other has no edge is taken as it is
+    wanted = np.asarray(fits.any(axis=(1, 2)) | alone)
     i, j = np.divmod(best, _PEAKS)
     return one.chosen(i, wanted), other.chosen(j, wanted)
 
