@@ -10,14 +10,13 @@ from fem.arrays import FloatArray
 from fem.assembly import Forces, Inverse, System
 from fem.contact import Contact, pressed_of
 from fem.errors import Attempt
-from fem.newton import relative_residual
+from fem.newton import NEAR, SURE, TIGHT, relative_residual
 from fem.sections import Chart, Pose
 from fem.slack import Switching
 
 DEPTH_MM = 0.01  # that a reported state may lie in the obstacle
 _MOST = 25  # factorisations after which a start is given up
 _PASSES = 6  # of multipliers
-_TIGHT, _NEAR, _SURE = 1e-4, 1e-3, 0.01  # as in `fem.newton`
 _TURN = 0.3  # rad, the most that a section turns in one step
 _MOVE_MM = 4.0  # the most that a node moves in one step
 _DECREASE = 1e-4  # of the energy, over what its slope promises
@@ -79,9 +78,9 @@ class Finder:
         system, outcome, residual = self._system, "residual", np.inf
         iterations = factored = 0
         found = None
-        tight = tolerance < _TIGHT
+        tight = tolerance < TIGHT
         while factored < _MOST:
-            double = tight and residual < _NEAR
+            double = tight and residual < NEAR
             forces, inverse = system.factor(pose.x, pressure, double=double)
             factored += 1
             if inverse is None:
@@ -97,7 +96,7 @@ class Finder:
                 iterations += 1
                 residual = relative_residual(forces, pressure)
             # As in `fem.newton.correct`: single precision may leave a soft motion over.
-            enough = tolerance if double or not tight else _SURE * tolerance
+            enough = tolerance if double or not tight else SURE * tolerance
             if residual <= enough and not inverse.negative:
                 outcome = "converged"
                 flow = inverse.solve(forces.volume_gradient)

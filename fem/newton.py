@@ -17,8 +17,8 @@ Outcome = Literal["converged", "residual", "inverted"]
 _MOST = 10  # factorisations after which it gives up
 _HOPELESS = 1e6  # so does it when the residual has grown this much
 _DAMPINGS = 4
-_TIGHT, _NEAR = 1e-4, 1e-3  # a tolerance below the one takes double precision below the other
-_SURE = 0.01  # of such a tolerance, after a step in single precision
+TIGHT, NEAR = 1e-4, 1e-3  # a tolerance below the one takes double precision below the other
+SURE = 0.01  # of such a tolerance, after a step in single precision
 _DESCENTS = 60  # factorisations
 _TURN = 0.3  # rad, the most that a section turns in one step downhill
 _DECREASE = 1e-4  # of the energy, over what its slope promises
@@ -92,9 +92,9 @@ def correct(
     outcome: Outcome = "residual"
     first = residual = np.inf
     factored = iterations = 0
-    tight, enough = tolerance < _TIGHT, tolerance
+    tight, enough = tolerance < TIGHT, tolerance
     while factored < _MOST:
-        double = tight and residual < _NEAR
+        double = tight and residual < NEAR
         forces, inverse = system.factor(pose.x, pressure, double=double)
         factored += 1
         if inverse is None:
@@ -112,7 +112,7 @@ def correct(
         pose, pressure, forces = moved
         iterations += 1
         # A soft motion that a step in single precision left over hardly shows in the residual.
-        enough = _SURE * tolerance if tight and not double else tolerance
+        enough = SURE * tolerance if tight and not double else tolerance
         residual = relative_residual(forces, pressure, volume)
         if residual <= enough:
             outcome = "converged"

@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from profiletool.files.design_json import load_design
     from profiletool.files.tube_json import load_tube, tube_json
     from profiletool.joints.plan import Plan
-    from profiletool.outputs import files_of
     from profiletool.pipeline import Result
     from profiletool.records.bench import Angle, Seen
     from profiletool.records.calibrated import CalibratedTube, request_with, with_tube
@@ -35,6 +34,7 @@ if TYPE_CHECKING:
     from profiletool.records.request import Request, TubeSpec
     from profiletool.records.setting import AngleReading, PressureSetting
     from profiletool.report.figures import figures_of
+    from profiletool.report.outputs import files_of
     from profiletool.subject.find import Subject
     from profiletool.verify.calibration import calibrate
     from profiletool.verify.check import Check
@@ -107,7 +107,7 @@ _HOMES = {
     "derive_formula": "api",
     "design": "api",
     "figures_of": "report.figures",
-    "files_of": "outputs",
+    "files_of": "report.outputs",
     "find_subject": "api",
     "formula_file": "campaign.formula_file",
     "load_design": "files.design_json",

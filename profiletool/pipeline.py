@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import html
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import reduce
 
 from formula.theta import Formula
 from profiletool.files.formula import formula_for
@@ -153,7 +154,7 @@ def run_again(
     say: Callable[[str], None],
     progress: Progress | None = None,
     *,
-    edit: Edit | None = None,
+    edits: Sequence[Edit] = (),
     refine: bool = False,
     pressure_bar: float | None = None,
 ) -> Result:
@@ -168,8 +169,8 @@ def run_again(
         For the angles of the table.
     say, progress : callable
         As for `run`.
-    edit : Edit, optional
-        A change by hand.
+    edits : sequence of Edit
+        Changes by hand, one after the other.
     refine : bool
         Whether finite elements correct the joints, in numbers that can be built.
     pressure_bar : float, optional
@@ -181,7 +182,7 @@ def run_again(
         Such as UsageError for a change that cannot be built, and UnreadableInput where a joint
         bends out of the plane.
     """
-    design = design if edit is None else edited(design, edit)
+    design = reduce(edited, edits, design)
     request = request_again(design, profile, refine, pressure_bar)
     check_request(request)
     source = design.source

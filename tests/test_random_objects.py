@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from profiletool.errors import NoObject
 from profiletool.files.design_json import from_json, to_json
 from profiletool.joints.bounds import END_WRAP_MM, WRAP_MM
-from profiletool.outputs import template_files
 from profiletool.pipeline import Request, run
+from profiletool.report.outputs import template_files
 
 T = np.linspace(0.0, 2.0 * np.pi, 721)[:-1]
 waves = st.lists(st.tuples(st.floats(-0.12, 0.12), st.floats(0, 6.3)), min_size=3, max_size=3)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
@@ -23,15 +23,16 @@ from profiletool.campaign.runs import JOINT_RUN
 from profiletool.campaign.store import Store, default_folder
 from profiletool.campaign.workers import run_all
 from profiletool.errors import UsageError
+from profiletool.files.design_json import load_design
 from profiletool.files.formula import formula_for, named_formula, read_formula
 from profiletool.joints.closest import spaced
 from profiletool.joints.optimal_method import optimal_plan
 from profiletool.joints.paper_method import paper_plan
 from profiletool.joints.plan import Plan
-from profiletool.pipeline import Result, run
-from profiletool.profile.drawing.load import drawing_of
+from profiletool.pipeline import Result, run, run_again
 from profiletool.records.built import BuildErrors
 from profiletool.records.design import Design
+from profiletool.records.edit import Edit
 from profiletool.records.making import check_request, request_of
 from profiletool.records.picture import Picture
 from profiletool.records.profile import DrawnLine, Profile
@@ -39,15 +40,24 @@ from profiletool.records.request import Request
 from profiletool.records.seal import sealed
 from profiletool.subject.find import Subject
 from profiletool.subject.find import find_subject as find
+from profiletool.subject.given import given_of
+from profiletool.subject.recall import profile_of
 from profiletool.verify.check import Check, check, runs_into_itself, withdrawn
 from profiletool.verify.errors import with_errors
 from profiletool.verify.recompute import recomputed
 
 Source = str | PathLike[str] | ArrayLike | Picture | DrawnLine | Profile
 Say = Callable[[str], None]
+Progress = Callable[[float], None]
 
 
-def design(source: Source | Request, *, say: Say | None = None, **options: Any) -> Result:
+def design(
+    source: Source | Request,
+    *,
+    say: Say | None = None,
+    progress: Progress | None = None,
+    **options: Any,
+) -> Result:
     """Design an actuator that mirrors the side of an object.
 
     Parameters
@@ -59,6 +69,8 @@ def design(source: Source | Request, *, say: Say | None = None, **options: Any) 
         of points or an image of Pillow); or a profile to follow as it is.
     say : callable, optional
         Takes one line of progress at a time.
+    progress : callable, optional
+        Takes the share of all that is done, 0 to 1.
     **options
         Options by field name: ``height_mm=107.5``, ``side="right"``, ``joints=5``,
         ``max_pressure_bar=1.5``, ``verify=False``; see `profiletool.records.options.DESIGN`.
@@ -74,7 +86,42 @@ def design(source: Source | Request, *, say: Say | None = None, **options: Any) 
         Of the class that tells what is wrong; a design that is infeasible or not verified is no
         error but says so.
     """
-    return run(request_for(source, **options), say or _silence)
+    return run(request_for(source, **options), say or _silence, progress)
+
+
+def design_again(
+    file: Path | str,
+    *,
+    edits: Sequence[Edit] = (),
+    refine: bool = False,
+    pressure_bar: float | None = None,
+    formula: Path | None = None,
+    say: Say | None = None,
+    progress: Progress | None = None,
+) -> Result:
+    """Take a design up again: change or correct it where asked, verify it and judge it anew.
+
+    Parameters
+    ----------
+    file : Path or str
+        A design.json, with shape.csv or the drawing beside it.
+    edits, refine, pressure_bar
+        As for `profiletool.pipeline.run_again`.
+    formula : Path, optional
+        As for `verify_design`.
+    say, progress : callable, optional
+        As for `design`.
+
+    Raises
+    ------
+    UsageError, UnreadableInput
+    """
+    design, place = load_design(file), Path(file)
+    known = named_formula(design.formula.name) if formula is None else read_formula(formula)
+    profile, say = profile_of(design, place), say or _silence
+    return run_again(
+        design, profile, known, say, progress, edits=edits, refine=refine, pressure_bar=pressure_bar
+    )
 
 
 def find_subject(source: Source | Request, *, say: Say | None = None, **options: Any) -> Subject:
@@ -236,27 +283,11 @@ def request_for(source: Source | Request, **options: Any) -> Request:
     if isinstance(source, Picture | DrawnLine | Profile):
         given = source
     else:
-        given = _given(np.asarray(source))
+        given = given_of(np.asarray(source))
     if isinstance(given, Profile):
         options["side"] = given.side
     file = Path("picture" if isinstance(given, Picture) else "profile")
     return replace(request_of(file, options, formula), given=given)
-
-
-def _given(array: NDArray[Any]) -> Picture | DrawnLine:
-    """Take an array for a picture or for the points of a line."""
-    if array.ndim == 2 and array.shape[1] == 2:
-        return drawing_of(array)
-    if array.dtype == np.uint8 and array.ndim == 2:
-        return Picture(np.repeat(array[:, :, None], 3, axis=2), None, None, "array")
-    if array.dtype == np.uint8 and array.ndim == 3 and array.shape[2] in (3, 4):
-        alpha = array[:, :, 3].copy() if array.shape[2] == 4 else None
-        opaque = alpha is None or bool((alpha == 255).all())
-        return Picture(array[:, :, :3].copy(), None if opaque else alpha, None, "array")
-    raise UsageError(
-        "an array is a picture, (H, W, 3), (H, W, 4) or (H, W) uint8, or points, (N, 2) in mm; "
-        f"not {array.shape} {array.dtype}"
-    )
 
 
 def _path(name: str | PathLike[str] | None) -> Path | None:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
@@ -14,6 +15,7 @@ from profiletool.cli.console import (
     Force,
     FormulaFile,
     Quiet,
+    changed,
     design_file,
     exit_codes,
     progress_bar,
@@ -22,9 +24,7 @@ from profiletool.cli.console import (
 from profiletool.cli.design import conclude
 from profiletool.cli.rows import parameters_of, with_signature
 from profiletool.cli.template import Paper
-
-if TYPE_CHECKING:
-    from profiletool.records.edit import Edit
+from profiletool.records.edit import Edit
 
 
 @dataclass(frozen=True)
@@ -50,16 +50,30 @@ def edit(
     move: Annotated[
         float | None, typer.Option(help="Its move along the tube, toward the closed end, mm.")
     ] = None,
+    center: Annotated[
+        float | None,
+        typer.Option(
+            "--alpha-center",
+            help="Where its uncut sector is, deg: 270 bends toward the object, 90 away.",
+        ),
+    ] = None,
+    change: Annotated[
+        list[Edit] | None,
+        typer.Option(
+            parser=changed,
+            metavar="JOINT:NAME=VALUE,...",
+            help="As often as need be, of any joint: 2:alpha=103,openF=8,move=-2,center=90.",
+        ),
+    ] = None,
     pressure: Annotated[float | None, typer.Option(help="The operating pressure, bar.")] = None,
     **options: Any,
 ) -> None:
     """Change a design by hand; finite elements verify it anew, and every file is written."""
     asked = Again(**options)
     with exit_codes(asked.debug):
-        from profiletool.records.edit import Edit
-
-        change = Edit(joint, alpha, openF, move, pressure)
-        _again(file, asked, "edited", change=change)
+        one = Edit(joint, alpha, openF, move, pressure, center)
+        edits = [*(change or [])] if one == Edit() and change else [*(change or []), one]
+        _again(file, asked, "edited", edits=edits)
 
 
 def report(file: DesignFile, **options: Any) -> None:
@@ -91,28 +105,23 @@ def _again(
     asked: Again,
     name: str,
     *,
-    change: Edit | None = None,
+    edits: Sequence[Edit] = (),
     refined: bool = False,
     pressure_bar: float | None = None,
 ) -> None:
     """Take a design up again, write its folder, and end with the exit code of its verdict."""
-    from profiletool import outputs, pipeline
+    from profiletool import api
     from profiletool.files import write
     from profiletool.files.design_json import load_design
-    from profiletool.files.formula import named_formula, read_formula
-    from profiletool.subject.recall import profile_of
+    from profiletool.report import outputs
     from profiletool.verdict.summary import joint_table
 
     file, say = design_file(given), speaker(asked.quiet)
-    design = load_design(file)
-    folder = asked.out or Path(f"{Path(design.source.file).stem}_{name}")
+    folder = asked.out or Path(f"{Path(load_design(file).source.file).stem}_{name}")
     write.check_free(folder, asked.force)
-    profile = profile_of(design, file)
-    other = asked.formula
-    formula = named_formula(design.formula.name) if other is None else read_formula(other)
     with progress_bar("finite elements", asked.quiet) as progress:
-        result = pipeline.run_again(
-            design, profile, formula, say, progress, edit=change, refine=refined,
+        result = api.design_again(
+            file, say=say, progress=progress, formula=asked.formula, edits=edits, refine=refined,
             pressure_bar=pressure_bar,
         )  # fmt: skip
     files = outputs.files_of(result, paper=asked.paper)

@@ -42,9 +42,17 @@ def _read_config(context: typer.Context, path: Path) -> dict[str, Any]:
         for option in parameter.opts
         if option.startswith("--") and parameter.name not in (None, "config", "debug")
     }
+    off = {
+        parameter.secondary_opts[0].removeprefix("--"): str(parameter.name)
+        for parameter in context.command.params
+        if parameter.secondary_opts and not any(o.startswith("--") for o in parameter.opts)
+    }
     known = {}
     for key, value in tree.items():
         flag = key.replace("_", "-")
+        if isinstance(value, bool) and (flag in off or f"no-{flag}" in off):  # --no-grip
+            known[off.get(flag) or off[f"no-{flag}"]] = value != (flag in off)
+            continue
         parameter = names.get(flag)
         if parameter is None and flag.removeprefix("no-") in names:
             raise UsageError(f'{path}: write "{flag[3:]} = false" in place of "{key}"')

@@ -15,6 +15,7 @@ import typer
 
 from profiletool.errors import ProfiletoolError, UsageError
 from profiletool.records.built import BuildErrors, build_errors
+from profiletool.records.edit import Edit, edit_of
 from profiletool.records.options import in_flags
 
 if TYPE_CHECKING:
@@ -202,6 +203,14 @@ def build(text: str) -> BuildErrors:
         return build_errors(text)
     except UsageError as error:
         raise typer.BadParameter(in_flags(str(error))) from error
+
+
+def changed(text: str) -> Edit:
+    """Read the change of a joint; as `numbers`."""
+    try:
+        return edit_of(text)
+    except UsageError as error:
+        raise typer.BadParameter(str(error)) from error
 
 
 def turn(text: str) -> float | str:

@@ -61,9 +61,9 @@ def deck(
         asked = DeckOptions(**{row.name: options.pop(row.name) for row in fields(DeckOptions)})
         folder = out or Path(f"{file.stem}_{asked.code}")
         check_run(pressure, folder, force)
-        from profiletool import outputs
         from profiletool.files import write
         from profiletool.files.design_json import load_design
+        from profiletool.report import outputs
         from profiletool.report.deck import make_deck_output
 
         design = load_design(file)

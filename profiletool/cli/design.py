@@ -87,7 +87,7 @@ def design(
             name = f"{delivery.out or picture.stem}_candidates"
             raise _doubted(unsure, name) from unsure
         # Heavy: a picture that is refused is refused sooner without it.
-        from profiletool import outputs
+        from profiletool.report import outputs
         from profiletool.verdict.summary import joint_table
 
         files = outputs.files_of(result, wish, delivery.paper)

@@ -93,8 +93,8 @@ def joint(
         check_run(pressure, out, force)
         if not 0.0 <= alpha_center <= 360.0:
             raise UsageError(f"--alpha-center must be 0 to 360, not {alpha_center:g}")
-        from profiletool import outputs
         from profiletool.files import write
+        from profiletool.report import outputs
         from profiletool.report.fe import fe_json, fe_text, formula_json, formula_text
         from profiletool.verify.run import DOWN, LYING, breaking, inflate, pressures_to
         from profiletool.verify.tube import joint_actuator
@@ -137,8 +137,8 @@ def finger(
     with exit_codes(debug):
         model = model_of(options, PAPER_MODEL)
         check_run(pressure, out, force)
-        from profiletool import outputs
         from profiletool.files import write
+        from profiletool.report import outputs
         from profiletool.report.fe import (
             fe_json,
             fe_text,

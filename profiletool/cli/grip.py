@@ -43,9 +43,9 @@ def grip(
     """
     with exit_codes(debug):
         check_run(None, out, force)
-        from profiletool import outputs
         from profiletool.files import write
         from profiletool.files.design_json import load_design
+        from profiletool.report import outputs
         from profiletool.report.grip import GripOutput, grip_json, grip_text
         from profiletool.subject.recall import target_of
         from profiletool.verify.grip import run_grip

@@ -17,6 +17,7 @@ from profiletool.cli import (
     fe,
     grip,
     measure,
+    studio,
     table,
     template,
     trim,
@@ -123,6 +124,7 @@ for _command, _example in (
     (again.edit, "profiletool edit bulb_design --joint 3 --alpha 132 --move 1 --out other"),
     (again.report, "profiletool report bulb_design/design.json --out whole"),
     (again.refine, "profiletool refine bulb_design/design.json --out better"),
+    (studio.studio, "profiletool studio bulb.png"),
     (template.template, "profiletool template bulb_design/design.json --variant strip"),
     (template.sheet, "profiletool sheet --paper letter --out sheet.pdf"),
 ):

@@ -124,7 +124,7 @@ def measure(
         for note in changed_notes(design):
             say(f"note: {note}")
         predicted = _predicted(design, file, max(bars), asked.fe, quiet)
-        from profiletool import outputs
+        from profiletool.report import outputs
         from profiletool.report.bench import bench_output, bench_text, compare_json
         from profiletool.subject.tube.family import family_of
         from profiletool.subject.tube.series import measure_series

@@ -91,9 +91,9 @@ def _annotation(row: Option) -> Any:
     if kind.type is BuildErrors:
         return Annotated[BuildErrors, typer.Option(row.flag, parser=build, **words)]
     if kind.type is bool:
-        on = " " if row.flag.startswith(_OFF) else row.flag
+        on = " " if row.flag.startswith(_OFF) else row.flag  # a blank: off alone
         flags = f"{on}/{_OFF}{row.flag.removeprefix(_OFF).lstrip('-')}" if row.off else row.flag
-        return Annotated[bool, typer.Option(flags, **words)]
+        return Annotated[bool, typer.Option(flags, show_default=bool(on.strip()), **words)]
     least = row.least if kind.type is int else None
     value: Any = Literal[kind.choices] if kind.choices else kind.type
     return Annotated[value | None, typer.Option(row.flag, min=least, **words)]

@@ -61,9 +61,9 @@ def template(
 ) -> None:
     """Draw the cut template of a design anew, or for another way to make it."""
     with exit_codes(debug):
-        from profiletool import outputs
         from profiletool.files import write
         from profiletool.files.design_json import load_design, to_json
+        from profiletool.report import outputs
         from profiletool.template.kerf import check_kerf
         from profiletool.template.kinds import Wish
 

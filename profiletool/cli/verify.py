@@ -103,8 +103,8 @@ def verify(
 def _write(
     out: Path, force: bool, run: Run, design: Design, told: str, points: FloatArray | None
 ) -> None:
-    from profiletool import outputs
     from profiletool.files import write
+    from profiletool.report import outputs
     from profiletool.report.dossier import formula_marks
 
     files = outputs.fe_files(run, design.source.file, told, points, formula_marks(design))

@@ -39,10 +39,14 @@ def edited(design: Design, edit: Edit) -> Design:
     """
     changes = {
         "alpha_closed_deg": edit.alpha_deg, "openF_mm": edit.openF_mm, "centre_mm": edit.move_mm,
+        "alpha_center_deg": edit.alpha_center_deg,
     }  # fmt: skip
     given: dict[str, Any] = {name: value for name, value in changes.items() if value is not None}
     if bool(given) != (edit.joint is not None):
-        raise UsageError("`joint` goes with one or more of `alpha_deg`, `openF_mm` and `move_mm`")
+        raise UsageError(
+            "`joint` goes with one or more of `alpha_deg`, `openF_mm`, `move_mm` and "
+            "`alpha_center_deg`"
+        )
     if not given and edit.pressure_bar is None:
         raise UsageError("nothing to change: give a `joint` with its numbers, or `pressure_bar`")
     joints = design.joints
@@ -69,6 +73,10 @@ def _check(design: Design, joints: tuple[Joint, ...], pressure_bar: float) -> No
         if not (meshes >= 0.99 and abs(meshes - round(meshes)) < 1e-6):
             raise UsageError(
                 f"`openF_mm` must be whole meshes of {pitch:g} mm, not {joint.openF_mm:g}"
+            )
+        if not 0.0 <= joint.alpha_center_deg < 360.0:
+            raise UsageError(
+                f"`alpha_center_deg` must be within 0 to 360, not {joint.alpha_center_deg:g}"
             )
         if not 0.0 < joint.alpha_closed_deg < 360.0:
             raise UsageError(f"`alpha_deg` must be within 0 to 360, not {joint.alpha_closed_deg:g}")

@@ -187,13 +187,13 @@ DESIGN = (
     ),
     Option(
         "--no-grip", "grip", _YES,
-        "Leave out to press the verified actuator on its object, and to choose the pressure to "
-        "work at there.", off=True,
+        "Leave out the run against the object, and with it the pressure to work at there.",
+        off=True,
     ),
     Option(
         "--grip", "grip_N", _number(" N"),
-        "Normal force of one finger on its object to choose the pressure to work at by, N "
-        "(default: the pressure of the least expected misfit).", above=0.0, metavar="N",
+        "Normal force of one finger on its object, N: work at the pressure that gives it "
+        "(default: at the pressure of the least expected misfit).", above=0.0, metavar="N",
     ),
     _OBJECT,
     Option(
@@ -244,7 +244,7 @@ GRIP = (
 MODEL = tuple(row for row in DESIGN if row.path.startswith("model."))
 # Fields of other records and commands that messages name.
 _OTHERS = {
-    "kerf_mm": "--kerf", "out": "--out", "force": "--force",
+    "kerf_mm": "--kerf", "port": "--port", "out": "--out", "force": "--force",
     "alpha_center_deg": "--alpha-center", "base": "--from", "runs": "--runs",
     "scheduler": "--scheduler", "workers": "--workers", "alpha_deg": "--alpha",
     "openF_mm": "--openF", "theta_deg": "--theta", "tip_mm": "--tip", "at_bar": "--at",

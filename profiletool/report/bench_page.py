@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from importlib.resources import files
 
 from matplotlib.figure import Figure
 
@@ -12,8 +11,9 @@ from profiletool.report.bench import NAMES, BenchOutput, compare_json
 from profiletool.report.bench_figures import angles_figure, regression_figure, ways_figure
 from profiletool.report.bench_film import bench_film
 from profiletool.report.figure import png, svg
-from profiletool.report.markup import Markup, adopted, pairs, policy, signed, table, tag
+from profiletool.report.markup import Markup, adopted, pairs, signed, table, tag
 from profiletool.report.markup import text as escaped
+from profiletool.report.page import asset, page
 from profiletool.report.registry import Writers
 
 R2_ALONE = (
@@ -25,29 +25,15 @@ R2_ALONE = (
 def bench_html(output: BenchOutput) -> bytes:
     """Write the page: the same output gives the same bytes."""
     name = output.design.source.file
-    script, styles = _asset("bench.js"), (_asset("report.css"), _asset("bench.css"))
-    head = tag(
-        "head",
-        tag("meta", charset="utf-8"),
-        tag("meta", http_equiv="Content-Security-Policy", content=policy(script)),
-        tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
-        tag("meta", name="color-scheme", content="light dark"),
-        tag("link", rel="icon", href="data:,"),
-        tag("title", f"{name}: on the bench"),
-        tag("style", *styles),
-    )
+    script, style = asset("bench.js"), Markup(asset("report.css") + asset("bench.css"))
     header = tag(
         "header",
         tag("p", "Measured on the bench", class_="eyebrow"),
         tag("h1", tag("bdi", name)),
         pairs(list(_facts(output)), "facts"),
     )
-    body = tag("body", header, tag("main", *_sections(output)), tag("script", script))
-    return f"<!doctype html>\n{tag('html', head, body, lang='en')}\n".encode()
-
-
-def _asset(name: str) -> Markup:
-    return Markup(files("profiletool.report").joinpath(name).read_text("utf-8"))
+    main = tag("main", *_sections(output))
+    return page(f"{name}: on the bench", style, script, header, main, tag("script", script))
 
 
 def _facts(output: BenchOutput) -> Iterable[tuple[str, str]]:

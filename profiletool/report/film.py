@@ -83,10 +83,15 @@ class Film:
 
 
 def film_of(found: Verification, design: Design, grip: Grip | None = None) -> Film:
-    """Take the states of a finite-element run, rest among them, and harder ones on the object."""
+    """Take the states of a finite-element run, rest among them, and harder ones on the object.
+
+    Those are left out of an infeasible design, which would jump where the object comes.
+    """
     free = (found.rest, *found.states)
     most = found.last.pressure_bar * (1.0 + _ABOVE)
-    held = () if grip is None else tuple(s for s in grip.states if s.pressure_bar > most)
+    held: tuple[GripState, ...] = ()
+    if grip is not None and design.feasible:
+        held = tuple(s for s in grip.states if s.pressure_bar > most)
     states: tuple[FeState | GripState, ...] = (*free, *held)
     return _film(
         [state.shape for state in states],

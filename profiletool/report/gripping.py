@@ -61,7 +61,9 @@ def _advice(grip: Grip, design: Design) -> tuple[Markup, ...]:
         "short of the object there; one that is softer is stopped by it. So a pressure above it "
         f"costs little and gains much: {mm_text(expected.in_contact)} mm RMS are to be expected "
         f"there, and 95 % of builds lie within {mm_text(most.in_contact)} mm. One finger as "
-        f"planned presses with {grip.normal_at(design.operate_bar):.2f} N there."
+        f"planned presses with {grip.normal_at(design.operate_bar):.2f} N there. Once the pressure "
+        f"was set on the finished actuator, work at {design.operate_bar / design.pressure_bar:.2f} "
+        "times that pressure."
     )
     return (tag("p", said),)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import PurePath
 
 from profiletool.records.fe import Verification
@@ -14,9 +13,10 @@ from profiletool.report.error import error_figure
 from profiletool.report.expectation import expectation
 from profiletool.report.film import Film, film_of, still_of
 from profiletool.report.gripping import gripping
-from profiletool.report.markup import Markup, adopted, joined, pairs, policy, tag
+from profiletool.report.markup import Markup, adopted, joined, pairs, tag
 from profiletool.report.measured import measured
 from profiletool.report.neighbours import neighbours
+from profiletool.report.page import asset, page
 from profiletool.report.plots import theta_figure
 from profiletool.report.plotted import plotted
 from profiletool.report.stage import controls, legend, readout, stage
@@ -30,27 +30,18 @@ from profiletool.verdict.summary import built_text, off_text
 def report_html(dossier: Dossier) -> bytes:
     """Write the report: the same dossier gives the same bytes."""
     name = _name(dossier)
-    script, style = (_asset(f"report.{kind}") for kind in ("js", "css"))
+    style, states, motion = (asset(name) for name in ("report.css", "film.js", "report.js"))
+    # A page from disk has no modules.
+    script = Markup(states.replace("\nexport ", "\n") + motion)
     film = _film(dossier)
-    head = tag(
-        "head",
-        tag("meta", charset="utf-8"),
-        tag("meta", http_equiv="Content-Security-Policy", content=policy(script)),
-        tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
-        tag("meta", name="color-scheme", content="light dark"),
-        tag("link", rel="icon", href="data:,"),
-        tag("title", f"{name}: bending actuator"),
-        tag("style", style),
-    )
     sections = _sections(dossier, film)
     moves = dossier.found is not None and film.moves
-    body = tag(
-        "body",
+    return page(
+        f"{name}: bending actuator", style, script,
         _header(dossier, sections),
         tag("main", *(section.drawn() for section in sections)),
         *([_states(film), tag("script", script)] if moves else []),
-    )
-    return f"<!doctype html>\n{tag('html', head, body, lang='en')}\n".encode()
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -183,8 +174,7 @@ def _film(dossier: Dossier) -> Film:
     scene, found = dossier.scene, dossier.found
     if found is None:
         return still_of(scene.bent, scene.design)
-    # A shape that misses the object would jump where the object comes.
-    return film_of(found, scene.design, dossier.grip if scene.design.feasible else None)
+    return film_of(found, scene.design, dossier.grip)
 
 
 def _shape(dossier: Dossier, film: Film) -> Markup:
@@ -276,7 +266,3 @@ def _states(film: Film) -> Markup:
 
 def _name(dossier: Dossier) -> str:
     return PurePath(dossier.scene.design.source.file).stem
-
-
-def _asset(name: str) -> Markup:
-    return Markup(files("profiletool.report").joinpath(name).read_text("utf-8"))

@@ -13,6 +13,7 @@ from profiletool.records.rubber import constants_text
 from profiletool.report.markup import Markup, joined, pairs, signed, tag
 from profiletool.report.tables import pressure_table, slit_table
 from profiletool.template.labels import short, times
+from profiletool.template.notes import alone
 from profiletool.template.unroll import sheet_size
 
 _CAP_MM = 4.0  # rubber beyond the core's end, which closes the tube (the paper's)
@@ -239,7 +240,8 @@ def _inflate(design: Design, found: Verification | None) -> Markup:
     parts = [
         tag(
             "p",
-            f"{'Never more than' if critical is None else 'Stay below'} {highest:.2f} bar. Wear "
+            f"{'Never more than' if critical is None else 'Stay below'} {highest:.2f} bar"
+            f"{alone(design)}. Wear "
             f"goggles. Go up {to}in {_STEPS} even steps with a precise regulator, wait {_WAIT_S} "
             "s at each and compare. Where a joint bends much more or less than it should, or the "
             "tube bulges, let the air out and look at slits and welds.",

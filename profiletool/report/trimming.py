@@ -10,7 +10,7 @@ from profiletool.records.design import Design
 from profiletool.records.options import FLAGS
 from profiletool.report.markup import Markup, joined, signed, table, tag
 from profiletool.report.steps import Step, origin_of
-from profiletool.template.notes import CYCLES
+from profiletool.template.notes import CYCLES, alone
 
 _NOTHING = "–"
 _FULL = 1.0999  # of the planned pressure: what the table should reach
@@ -58,7 +58,8 @@ def _steps(design: Design, most_bar: float) -> Iterator[Step]:
     more = f" It is above the {most_bar:.2f} bar asked for: see that supply and fittings bear it."
     said = (
         f"Inflate {CYCLES} times to {top:.2f} bar and let the air out again: silicone softens in "
-        f"its first cycles. {why}. Never go above it.{more if top > most_bar else ''}"
+        f"its first cycles. {why}. Never go above it{alone(design)}."
+        f"{more if top > most_bar else ''}"
     )
     yield Step("Precondition", tag("p", said))
     said = (

@@ -63,18 +63,15 @@ def find_subject(request: Request, say: Callable[[str], None]) -> Subject:
     ------
     UnreadableInput, NoScale, NoObject, UsageError
     """
-    reach, given = _reach(request), request.given
+    reach, given = _reach(request), source_of(request)
     if isinstance(given, Profile):
         return Subject(None, None, Scale(1.0, "vector"), None, given)
-    if given is None and request.file.suffix.lower() in SUFFIXES:
-        given = load_vector(request.file, request.look.layer)
     if isinstance(given, DrawnLine):
         line = see_drawing(given, request.scale, request.look)
         profile = line.profile(reach)
         say(line.told(profile))
         return Subject(None, None, line.scale, None, profile, line.rotated_deg, line.notes)
-    picture = load_picture(request.file) if given is None else given
-    seen = see(picture, request.scale, request.look, say)
+    seen = see(given, request.scale, request.look, say)
     silhouette, scale = seen.silhouette, seen.scale
     _check_frame(silhouette, scale, request.side)
     k = scale.mm_per_px
@@ -89,9 +86,23 @@ def find_subject(request: Request, say: Callable[[str], None]) -> Subject:
         f"{k:.4g} mm per pixel from {scale.source}{within}"
     )
     profile = profile_of_object(outline, _seen(reach, silhouette, scale))
-    notes = (*picture.notes, *seen.notes, *sides_apart(float(width), request.scale))
+    notes = (*given.notes, *seen.notes, *sides_apart(float(width), request.scale))
     place = float(origin[0]), float(origin[1])
     return Subject(seen.picture, silhouette, scale, place, profile, seen.rotated_deg, notes)
+
+
+def source_of(request: Request) -> Picture | DrawnLine | Profile:
+    """Read what a request is about, or take what is given in its place.
+
+    Raises
+    ------
+    UnreadableInput
+    """
+    if request.given is not None:
+        return request.given
+    if request.file.suffix.lower() in SUFFIXES:
+        return load_vector(request.file, request.look.layer)
+    return load_picture(request.file)
 
 
 def subject_again(subject: Subject, request: Request) -> Subject:

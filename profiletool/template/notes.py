@@ -181,15 +181,24 @@ def _facts(design: Design, size: tuple[float, float], wish: Wish) -> list[str]:
     tube, gauze = design.tube, design.gauze
     turns = f", turns: {gauze.turns}" if wish.variant == "gauze" else ""
     date = "".join(char for char in wish.date if char.isprintable())
+    at = design.operate_bar
+    held = "" if at is None else f", on object {at:.2f}"
     return [
         f"Tube D {tube.outer_diameter_mm:g}, wall {tube.wall_mm:g}, length "
         f"{short(tube.length_mm)}, clamp {short(design.clamp.length_mm)} mm.  "
-        f"Pressure {design.pressure_bar:.2f} bar.  "
+        f"Pressure {design.pressure_bar:.2f}{held} bar.  "
         f"Joints: {len(design.joints)}." + (f"  {date[:DATE_CHARS]}" if date else ""),
         f"{KINDS[wish.variant].piece} {short(size[0])} x {short(size[1])} mm, mesh "
         f"{gauze.pitch_mm:g} mm, thread {gauze.thread_mm:g} mm{turns}, seam "
         f"{short(gauze.seam_deg)}°.  Kerf {wish.kerf_mm:g}.",
     ]
+
+
+def alone(design: Design) -> str:
+    """Say that a highest pressure holds for the finger alone, where it works above it."""
+    top = design.trim[-1].pressure_bar if design.trim else design.pressure_bar
+    at = design.operate_bar
+    return "" if at is None or at <= top else " in free air"
 
 
 def _setting(design: Design) -> Iterator[str]:
@@ -199,9 +208,9 @@ def _setting(design: Design) -> Iterator[str]:
     x, y = design.planned.tip_mm
     bar, top = design.pressure_bar, design.trim[-1].pressure_bar
     yield (
-        f"Before use: inflate {CYCLES} times to {top:.2f} bar, never more. Hold {bar:.2f} bar for "
-        f"a minute, then set the pressure by the tip (planned: x {x:.1f}, y {y:.1f} mm) or the "
-        "angles: see the report."
+        f"Before use: inflate {CYCLES} times to {top:.2f} bar, never more{alone(design)}. Hold "
+        f"{bar:.2f} bar for a minute, then set the pressure by the tip (planned: x {x:.1f}, "
+        f"y {y:.1f} mm) or the angles: see the report."
     )
 
 

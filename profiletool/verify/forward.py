@@ -33,7 +33,7 @@ class FeForwardModel:
     """A forward model by finite elements of the whole actuator.
 
     ``told`` is called before each is bent; ``known`` is the solution of a similar one to begin
-    from.
+    from, ``rates`` its sensitivities, which make that surer.
     """
 
     def __init__(
@@ -42,9 +42,12 @@ class FeForwardModel:
         model: ModelInputs = PAPER_MODEL,
         told: Callable[[], None] | None = None,
         known: Solution | None = None,
+        rates: Sensitivities | None = None,
     ) -> None:
         self._spec, self._model, self._told, self._known = spec, model, told, known
         self._rates: tuple[Solution, Sensitivities] | None = None  # the last ones found
+        if known is not None and rates is not None:
+            self._rates = known, rates
 
     def bend(
         self, posed: PosedChain, sign: float, near: Iterate[Solution] | None

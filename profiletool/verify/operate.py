@@ -45,7 +45,7 @@ class InContact:
     design : Design
         With ``operate_bar``, and the misfit in contact to expect.
     grip : Grip or None
-        The finger on its object at the pressures that were looked at; None where none were.
+        The finger on its object, with what was in the way; None where it was not pressed on it.
     """
 
     design: Design
@@ -83,11 +83,11 @@ def in_contact(
     """
     if design.built is None:
         return InContact(design, None)
+    bars = tuple(share * design.pressure_bar for share in SHARES)
     try:
         obstacle, solid = object_of(design, target, asked.solid, asked.clearance_mm)
-    except UsageError:
-        return InContact(design, None)
-    bars = tuple(share * design.pressure_bar for share in SHARES)
+    except UsageError as error:
+        return InContact(design, Grip(asked.solid, (), bars[-1], None, str(error), 0, 0.0))
     if force_N is not None:
         further = (share * design.pressure_bar for share in _FURTHER)
         bars = (*bars, *(bar for bar in further if bar < most_bar), max(most_bar, bars[-1]))

@@ -24,7 +24,7 @@ def in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
 @pytest.fixture
 def few_files(monkeypatch: pytest.MonkeyPatch) -> None:
     """Write some files of a design only: drawings, plots and the report take longer than it."""
-    from profiletool import outputs
+    from profiletool.report import outputs
 
     rows = {name: outputs.DESIGN_FILES[name] for name in FEW}
     monkeypatch.setattr(outputs, "DESIGN_FILES", rows)

@@ -55,7 +55,9 @@ def test_a_changed_file_is_whole_again_after_report(tmp_path: Path) -> None:
 
 def test_bad_changes_are_bad_usage(egg, tmp_path: Path) -> None:
     for words, says in (
-        (("--alpha", 90), "--joint goes with one or more of --alpha, --openF and --move"),
+        (("--alpha", 90), "--joint goes with one or more of --alpha, --openF, --move and"),
+        (("--change", "3:alpha"), "expected a change such as 3:alpha=103"),
+        (("--change", "99:alpha=90"), "--joint must be 1 to"),
         (("--joint", 99, "--alpha", 90), "--joint must be 1 to"),
         ((), "nothing to change"),
     ):

@@ -7,6 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from profiletool.errors import ProfiletoolError
+from profiletool.records.request import Request
+from tests.calls import call
 from tests.cli.inputs import unverified
 
 
@@ -37,3 +40,22 @@ def test_config_gives_defaults_and_the_command_line_wins(samples: Path, tmp_path
 def test_config_is_checked(text: str, code: int, samples: Path, tmp_path: Path) -> None:
     (tmp_path / "lab.toml").write_text(text)
     assert unverified(samples / "egg.png", "--config", "lab.toml").exit_code == code
+
+
+@pytest.mark.parametrize(
+    ("text", "grip", "force"),
+    [("grip = false", False, None), ("no-grip = true", False, None), ("grip = 1.5", True, 1.5)],
+)
+def test_the_grip_is_left_out_or_sets_the_pressure(
+    text: str, grip: bool, force: float | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[Request] = []
+
+    def heard(request: Request, *_: object) -> None:
+        asked.append(request)
+        raise ProfiletoolError("enough")
+
+    monkeypatch.setattr("profiletool.pipeline.run", heard)
+    (tmp_path / "lab.toml").write_text(text)
+    call("design", "egg.png", "--config", tmp_path / "lab.toml")
+    assert [(one.grip, one.grip_N) for one in asked] == [(grip, force)]

@@ -55,6 +55,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_a_formula_of_finite_elements(made: Path) -> None:
     tree = json.loads((made / "mine.json").read_text())
     assert tree["name"] == "mine"
@@ -69,6 +70,7 @@ def test_a_formula_of_finite_elements(made: Path) -> None:
     assert (made / "report" / "formula.json").read_bytes() == (made / "mine.json").read_bytes()
 
 
+@pytest.mark.slow
 def test_nothing_is_run_twice(made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def never(task: object) -> None:
         raise AssertionError("it is in the folder of runs")
@@ -79,6 +81,7 @@ def test_nothing_is_run_twice(made: Path, tmp_path: Path, monkeypatch: pytest.Mo
     assert (tmp_path / "mine.json").read_bytes() == (made / "mine.json").read_bytes()
 
 
+@pytest.mark.slow
 def test_table_and_assign_take_it(made: Path) -> None:
     result = call("table", "--formula", made / "mine.json", "--openF", "8", "--csv")
     assert result.exit_code == 0, result.stderr
@@ -89,6 +92,7 @@ def test_table_and_assign_take_it(made: Path) -> None:
     assert "pressure 0.40 bar" in result.stdout
 
 
+@pytest.mark.slow
 def test_beyond_its_range_it_is_refused_or_marked(made: Path) -> None:
     table = ("table", "--formula", made / "mine.json", "--openF", "16")
     result = call(*table)

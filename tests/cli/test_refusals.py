@@ -128,7 +128,7 @@ def test_exit_5_for_a_straight_profile(tmp_path: Path) -> None:
         ("500,100\n500,50\n500,0\n", ("--joints", "2"), 5),
         ("0,80\n0,0\n80,0\n", ("--from", "50", "--to", "50.01"), 5),
         ("0,80\n-20,0\n0,-80\n", ("--joints", "120", "--method", "paper"), 6),
-        ("0,20\n-5,0\n0,-20\n", ("--joints", "40"), 6),
+        pytest.param("0,20\n-5,0\n0,-20\n", ("--joints", "40"), 6, marks=pytest.mark.slow),
         ("0,80\n-20,0\n0,-80\n", ("--out", "x" * 300), 1),
     ],
 )

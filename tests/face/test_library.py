@@ -38,6 +38,7 @@ def made(samples: Path) -> Result:
     return design(Request(samples / "egg.png", verify=False))
 
 
+@pytest.mark.slow
 def test_a_file_by_its_name_gives_what_the_command_gives(made: Result, samples: Path) -> None:
     assert not made.design.verified
     assert made.design.source.file == "egg.png"

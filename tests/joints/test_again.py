@@ -13,7 +13,7 @@ from profiletool.errors import UsageError
 from profiletool.files.design_json import load_design
 from profiletool.joints.again import edited, plan_again, posed_of
 from profiletool.records.design import Design
-from profiletool.records.edit import Edit
+from profiletool.records.edit import Edit, edit_of
 from profiletool.records.making import request_again
 from profiletool.subject.recall import profile_along
 from profiletool.verify.recompute import recomputed
@@ -49,11 +49,28 @@ def test_what_is_given_is_changed_and_nothing_else(design: Design) -> None:
         (Edit(1, move_mm=-6.0), "into the clamp"),
         (Edit(6, move_mm=8.0), "beyond the tube's closed end"),
         (Edit(pressure_bar=-1.0), "`pressure_bar` must be above 0"),
+        (Edit(1, alpha_center_deg=360.0), "`alpha_center_deg` must be within 0 to 360"),
     ],
 )
 def test_what_cannot_be_built_is_refused(design: Design, edit: Edit, says: str) -> None:
     with pytest.raises(UsageError, match=says):
         edited(design, edit)
+
+
+def test_a_joint_is_turned_over(design: Design) -> None:
+    new = edited(design, edit_of("2:center=90,alpha=103"))
+    assert [joint.sense for joint in new.joints[:3]] == [1.0, -1.0, 1.0]
+    assert new.joints[1].alpha_closed_deg == 103.0
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "2", "2:", ":alpha=3", "2:alpha", "2:alpha=x", "2:alpha=nan", "2:beta=3", "x:move=1",
+     "2:move=1,move=2", "2:move=1e999"],
+)  # fmt: skip
+def test_a_change_that_cannot_be_read(text: str) -> None:
+    with pytest.raises(UsageError, match="expected a change such as"):
+        edit_of(text)
 
 
 def test_a_plan_has_the_joints_of_its_design(design: Design) -> None:

@@ -80,6 +80,7 @@ def test_a_given_pressure_that_no_joint_is_known_at(samples: Path) -> None:
         run(request_of(samples / "finger_rest.csv", {"pressure_bar": 0.1}), silent)
 
 
+@pytest.mark.slow
 def test_neighbours_are_told_with_the_choice(result: Result) -> None:
     chosen, *others = result.design.neighbours
     count = len(result.design.joints)

@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 
 from fem.mesh import make_mesh
-from profiletool import design, outputs
+from profiletool import design
 from profiletool.files.design_json import from_json
 from profiletool.pipeline import Result
+from profiletool.report import outputs
 from profiletool.verify.tube import actuator_of
 from tests.report.pages import Page
 

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from profiletool.report.markup import MINUS
+from tests.programs import program
 
 WIDE, NARROW = 1280, 390
 
@@ -19,6 +22,26 @@ FLAGS = (
 )  # fmt: skip
 
 
+@contextmanager
+def started(profile: Path) -> Iterator[Browser]:
+    """Start Chromium with a folder for its own files."""
+    chromium, chromedriver = program("chromium"), program("chromedriver")
+    from selenium import webdriver
+    from selenium.webdriver.chrome.options import Options
+    from selenium.webdriver.chrome.service import Service
+
+    options = Options()
+    options.binary_location = chromium
+    for flag in (*FLAGS, f"--user-data-dir={profile}"):
+        options.add_argument(flag)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    driver = webdriver.Chrome(options=options, service=Service(chromedriver))
+    try:
+        yield Browser(driver)
+    finally:
+        driver.quit()
+
+
 @dataclass(frozen=True)
 class Browser:
     """Chromium, and what it says of a page."""
@@ -28,8 +51,10 @@ class Browser:
     def command(self, name: str, **parameters: object) -> Any:
         return self.driver.execute_cdp_cmd(name, parameters)
 
-    def open(self, file: Path, width: int = WIDE, *, dark: bool = False, media: str = "") -> None:
-        """Open a file afresh; what was heard of earlier pages is forgotten."""
+    def open(
+        self, page: Path | str, width: int = WIDE, *, dark: bool = False, media: str = ""
+    ) -> None:
+        """Open a file or an address afresh; what was heard of earlier pages is forgotten."""
         self.command(
             "Emulation.setDeviceMetricsOverride",
             width=width, height=900, deviceScaleFactor=1, mobile=width == NARROW,
@@ -39,7 +64,7 @@ class Browser:
         self.driver.get("about:blank")
         self.driver.get_log("browser")
         self.driver.get_log("performance")
-        self.driver.get(file.as_uri())
+        self.driver.get(page if isinstance(page, str) else page.as_uri())
 
     def js(self, expression: str, *arguments: object) -> Any:
         return self.driver.execute_script(f"return {expression}", *arguments)

@@ -9,8 +9,7 @@ import pytest
 
 from profiletool.report.dossier import Dossier
 from profiletool.report.html import report_html
-from tests.programs import program
-from tests.report.browser import FLAGS, Browser
+from tests.report.browser import Browser, started
 from tests.report.dossiers import (
     designed,
     ended_early,
@@ -24,21 +23,8 @@ from tests.report.pages import Page
 
 @pytest.fixture(scope="module")
 def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
-    chromium, chromedriver = program("chromium"), program("chromedriver")
-    from selenium import webdriver
-    from selenium.webdriver.chrome.options import Options
-    from selenium.webdriver.chrome.service import Service
-
-    options = Options()
-    options.binary_location = chromium
-    for flag in (*FLAGS, f"--user-data-dir={tmp_path_factory.mktemp('chromium')}"):
-        options.add_argument(flag)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    driver = webdriver.Chrome(options=options, service=Service(chromedriver))
-    try:
-        yield Browser(driver)
-    finally:
-        driver.quit()
+    with started(tmp_path_factory.mktemp("chromium")) as ours:
+        yield ours
 
 
 @pytest.fixture(scope="module")

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from profiletool.outputs import files_of
 from profiletool.pipeline import Request, Result, run
 from profiletool.report.film import Film, film_of
 from profiletool.report.html import report_html
 from profiletool.report.markup import MINUS
+from profiletool.report.outputs import files_of
 from tests.report.browser import NARROW, WIDE, Browser
 from tests.report.dossiers import designed, unverified, verified, with_joints
 

@@ -10,8 +10,8 @@ import pytest
 
 from fem.export.expected import Expected
 from profiletool.files.design_json import load_design
-from profiletool.outputs import deck_files
 from profiletool.report.deck import DeckOutput, make_deck_output
+from profiletool.report.outputs import deck_files
 from tests.report.dossiers import made_up
 
 

@@ -97,4 +97,10 @@ def test_the_templates_note(design: Design) -> None:
     said = noted(design)
     assert f"inflate 5 times to {top:.2f} bar, never more. Hold {bar:.2f} bar" in said
     assert "planned: x -20.0, y -90.0 mm" in said
+    assert "on object" not in said
+    # Above what was checked free, the finger works on its object alone.
+    held = noted(replace(design, operate_bar=top + 0.02))
+    assert f"to {top:.2f} bar, never more in free air. Hold {bar:.2f} bar" in held
+    assert f"Pressure {bar:.2f}, on object {top + 0.02:.2f} bar." in held
+    assert "never more. Hold" in noted(replace(design, operate_bar=top))
     assert "Before use" not in noted(replace(design, trim=()))

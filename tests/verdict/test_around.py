@@ -24,6 +24,7 @@ def result() -> Result:
     return design(ARC, verify=False)
 
 
+@pytest.mark.slow
 def test_finite_elements_are_said_where_they_corrected_a_neighbour(
     result: Result, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -55,6 +56,7 @@ def test_finite_elements_are_said_where_they_corrected_a_neighbour(
     assert one.by == "joint response"
 
 
+@pytest.mark.slow
 def test_a_neighbour_that_cannot_be_bent_stays_by_the_model(
     result: Result, monkeypatch: pytest.MonkeyPatch
 ) -> None:

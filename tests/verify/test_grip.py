@@ -127,6 +127,7 @@ def test_a_grip_is_told(found: Grip) -> None:
     assert len(grip_csv(found).splitlines()) == 3
 
 
+@pytest.mark.slow
 def test_the_finger_works_above_its_free_pressure(
     design: Design, run: Run, target: FloatArray
 ) -> None:
@@ -147,6 +148,13 @@ def test_the_finger_works_above_its_free_pressure(
     capped = in_contact(told, run.solution, target, fields, GripRequest(), 0.82).design
     assert capped.operate_bar is not None
     assert capped.operate_bar <= 0.82
+    # An object that cannot be is told, not passed over.
+    beyond = target + np.array([40.0, 0.0])
+    turned = GripRequest(solid="turned")
+    refused = in_contact(told, run.solution, beyond, fields, turned, 2.0)
+    assert refused.design.operate_bar is None
+    assert refused.grip is not None
+    assert "beyond the object's axis" in str(refused.grip.failure)
     # A force that is asked for sets the pressure; where it is out of reach, the highest one is.
     assert held.grip is not None
     asked = held.grip.normal_at(0.97)

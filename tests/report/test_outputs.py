@@ -8,15 +8,15 @@ from typing import Any, cast
 
 import pytest
 
-from profiletool.outputs import (
+from profiletool.pipeline import Result
+from profiletool.records.request import TubeSpec
+from profiletool.report.outputs import (
     DESIGN_FILES,
     TEMPLATE_FILES,
     DesignOutput,
     fe_files,
     template_files,
 )
-from profiletool.pipeline import Result
-from profiletool.records.request import TubeSpec
 from profiletool.report.registry import rows_of, written
 from profiletool.template.kinds import Wish
 from profiletool.verify.check import Check
