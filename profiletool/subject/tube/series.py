@@ -227,7 +227,7 @@ def _seen(fit: _Fit, family: Family) -> Seen:
     """Read angles and lines off a fit."""
     fitted, view = fit.fitted, fit.view
     tube = fitted.tube
-    outline = family.outline(tube.bar, tube.turn, tube.grow)
+    outline = tube.outline(family)
     lines = view.camera.lines(outline, tube.place, tube.size)
     none = np.zeros(family.joints)
     planned = view.camera.lines(family.outline(view.bar, none, none), tube.place, tube.size)
