@@ -16,7 +16,7 @@ from profiletool.records.design import Design
 from profiletool.records.picture import Picture
 from profiletool.records.setting import AngleReading
 from profiletool.subject.tube.family import family_of
-from profiletool.subject.tube.series import measure_series
+from profiletool.subject.tube.series import measure_series, timed
 from profiletool.subject.tube.views import Looked, picture_of
 from profiletool.verify.predicted import predicted_by_fe, predicted_by_response
 from profiletool.verify.setting import MOST_BAR
@@ -29,6 +29,7 @@ def measure_pictures(
     pictures: Sequence[Shot],
     pressures_bar: Sequence[float],
     *,
+    times_s: Sequence[float] | None = None,
     mm_per_px: float | None = None,
     fe: bool = True,
     progress: Callable[[float], None] | None = None,
@@ -41,7 +42,9 @@ def measure_pictures(
         What it was built from.
     pictures : sequence of path, (H, W, 3) uint8 in RGB, or Picture
     pressures_bar : sequence of float
-        One for each picture, bar, rising.
+        One for each picture, bar; rising where no times are given.
+    times_s : sequence of float, optional
+        One for each picture, s, rising: `calibrate` finds relaxation where a pressure was held.
     mm_per_px : float, optional
         Where no printed sheet tells.
     fe : bool
@@ -59,27 +62,35 @@ def measure_pictures(
     UsageError, UnreadableInput, NoScale, NoObject, NotVerified
     """
     bars = [float(bar) for bar in pressures_bar]
-    if len(bars) != len(pictures) or any(b <= a for a, b in pairwise(bars)):
+    times = None if times_s is None else [float(time) for time in times_s]
+    if len(bars) != len(pictures) or (times is None and not _rise(bars)):
         raise UsageError("`pressures_bar` holds one pressure for each picture, rising")
-    if not bars or not (bars[0] >= 0.0 and 0.0 < bars[-1] <= MOST_BAR):
+    if times is not None and not (len(times) == len(pictures) and _rise(times)):
+        raise UsageError("`times_s` holds one time for each picture, rising")
+    if not bars or not (min(bars) >= 0.0 and 0.0 < max(bars) <= MOST_BAR):
         raise UsageError(
             f"`pressures_bar` must be 0 to {MOST_BAR:g} bar, not all 0: an actuator at rest tells "
             "nothing"
         )
-    predicted = (predicted_by_fe if fe else predicted_by_response)(design, bars[-1])
+    predicted = (predicted_by_fe if fe else predicted_by_response)(design, max(bars))
     names = [
         Path(one).name if isinstance(one, str | PathLike) else f"picture {k}"
         for k, one in enumerate(pictures, start=1)
     ]
     looked = Looked(mm_per_px)
     family = family_of(predicted)
-    return measure_series(family, names, bars, lambda k: _picture(pictures[k]), looked, progress)
+    seen = measure_series(family, names, bars, lambda k: _picture(pictures[k]), looked, progress)
+    return seen if times is None else timed(seen, times)
+
+
+def _rise(values: Sequence[float]) -> bool:
+    return all(a < b for a, b in pairwise(values))
 
 
 def readings_of(seen: Sequence[Seen]) -> tuple[AngleReading, ...]:
     """Take the angles that ``seen`` holds, but those that are lost, as readings."""
     return tuple(
-        AngleReading(one.pressure_bar, joint, angle.theta_deg, angle.sigma_deg)
+        AngleReading(one.pressure_bar, joint, angle.theta_deg, angle.sigma_deg, one.time_s)
         for one in seen
         for joint, angle in enumerate(one.angles, start=1)
         if angle.state != "lost"

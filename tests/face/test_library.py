@@ -182,6 +182,12 @@ def test_pictures_that_cannot_be_measured(
         measure_pictures(bulb, pictures, bars, mm_per_px=0.2, fe=False)
 
 
+def test_times_rise(samples: Path) -> None:
+    bulb = load_design(samples / "paper_bulb.json")
+    with pytest.raises(UsageError, match="times_s"):
+        measure_pictures(bulb, ["a.jpg"] * 2, [0.6] * 2, times_s=[1.0, 1.0], fe=False)
+
+
 @pytest.mark.slow
 def test_pictures_are_measured_and_read(samples: Path) -> None:
     bulb = load_design(samples / "paper_bulb.json")
