@@ -39,7 +39,7 @@ from profiletool.verify.tube import FINGER, actuator_of
 SAMPLES = Path(__file__).parents[1] / "samples"
 DEAD_BAR, TWIN = 0.04, {"rubber": 0.9, "wall": 0.97, "thread": 3.0}
 GIVEN_MM_PER_PX = 0.124  # of the views without the sheet; it is 0.125 on the ground
-WIDE = (2000, 1280)
+WIDE = (2000, 1600)
 
 
 def _bench() -> ModuleType:
@@ -54,7 +54,7 @@ def _bench() -> ModuleType:
 
 bench = _bench()
 Shot = bench.Shot
-LYING = bench.Lying(y=-25.0)
+LYING = bench.Lying(y=-45.0)
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ from profiletool.subject.tube.family import Family
 from profiletool.subject.tube.values import Known, Line, Tube
 
 # Standard deviations before any edge is seen: of a joint's own turn, and of that over its angle;
-# of a lengthening; of the model's pressure over itself. A joint turns a little nearer its one end
-# than the model's, in another rubber or gauze: what lies beyond is shifted, the more it turns.
+# of a lengthening; of the model's pressure over itself; of a shift. In another rubber or gauze a
+# cut bends a little nearer one of its ends: what lies beyond is shifted, the more it turns.
 _TURN_RAD, _TURN_SHARE, _GROW_MM, _BAR_SHARE = np.radians(1.0), 0.12, 1.0, 0.3
 _SHIFT_MM, _SHIFT_MM_RAD = 0.01, 0.1
 _MARGIN_MM, _SPACING_MM = 0.25, 0.5  # of the places that are looked at
