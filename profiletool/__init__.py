@@ -17,13 +17,17 @@ from profiletool.records import version as _version
 
 if TYPE_CHECKING:
     from profiletool.api import derive_formula, design, find_subject, plan_joints, verify_design
+    from profiletool.api.bench import measure_pictures, readings_of
     from profiletool.campaign.derive import CampaignPlan, Derivation
     from profiletool.campaign.formula_file import formula_file
     from profiletool.errors import ProfiletoolError
     from profiletool.files.angles_csv import read_angles
     from profiletool.files.design_json import load_design
+    from profiletool.files.tube_json import load_tube, tube_json
     from profiletool.joints.plan import Plan
     from profiletool.pipeline import Result
+    from profiletool.records.bench import Angle, Seen
+    from profiletool.records.calibrated import CalibratedTube, request_with, with_tube
     from profiletool.records.design import Design, Joint
     from profiletool.records.picture import Picture
     from profiletool.records.profile import DrawnLine, Profile
@@ -32,13 +36,16 @@ if TYPE_CHECKING:
     from profiletool.report.figures import figures_of
     from profiletool.report.outputs import files_of
     from profiletool.subject.find import Subject
+    from profiletool.verify.calibration import calibrate
     from profiletool.verify.check import Check
     from profiletool.verify.setting import trim_pressure
 
 __version__ = _version.VERSION
 
 __all__ = [
+    "Angle",
     "AngleReading",
+    "CalibratedTube",
     "CampaignPlan",
     "Check",
     "Derivation",
@@ -52,8 +59,10 @@ __all__ = [
     "ProfiletoolError",
     "Request",
     "Result",
+    "Seen",
     "Subject",
     "TubeSpec",
+    "calibrate",
     "derive_formula",
     "design",
     "figures_of",
@@ -61,15 +70,23 @@ __all__ = [
     "find_subject",
     "formula_file",
     "load_design",
+    "load_tube",
+    "measure_pictures",
     "plan_joints",
     "read_angles",
+    "readings_of",
+    "request_with",
     "trim_pressure",
+    "tube_json",
     "verify_design",
+    "with_tube",
 ]
 
 # Where each name is at home; a room is loaded when one of its names is first asked for.
 _HOMES = {
+    "Angle": "records.bench",
     "AngleReading": "records.setting",
+    "CalibratedTube": "records.calibrated",
     "CampaignPlan": "campaign.derive",
     "Check": "verify.check",
     "Derivation": "campaign.derive",
@@ -83,8 +100,10 @@ _HOMES = {
     "ProfiletoolError": "errors",
     "Request": "records.request",
     "Result": "pipeline",
+    "Seen": "records.bench",
     "Subject": "subject.find",
     "TubeSpec": "records.request",
+    "calibrate": "verify.calibration",
     "derive_formula": "api",
     "design": "api",
     "figures_of": "report.figures",
@@ -92,10 +111,16 @@ _HOMES = {
     "find_subject": "api",
     "formula_file": "campaign.formula_file",
     "load_design": "files.design_json",
+    "load_tube": "files.tube_json",
+    "measure_pictures": "api.bench",
     "plan_joints": "api",
     "read_angles": "files.angles_csv",
+    "readings_of": "api.bench",
+    "request_with": "records.calibrated",
     "trim_pressure": "verify.setting",
+    "tube_json": "files.tube_json",
     "verify_design": "api",
+    "with_tube": "records.calibrated",
 }
 
 

@@ -48,8 +48,8 @@ class MeasureOptions:
         str,
         typer.Option(
             metavar="BAR,...|FILE.csv",
-            help="Pressure of each picture, bar, rising; or of a video: a CSV with time_s and "
-            "pressure_bar.",
+            help="Pressure of each picture, bar, rising; or over time, of a video or pictures: a "
+            "CSV with time_s and pressure_bar.",
         ),
     ]
     out: Annotated[
@@ -117,7 +117,7 @@ def measure(
 
         write.check_free(folder, force)
         design = load_design(file)
-        names, bars, load = _pictures(pictures, asked.pressures)
+        names, bars, times, load = _pictures(pictures, asked.pressures)
         looked = _looked(asked)
         chosen = named_formula(design.formula.name) if formula is None else read_formula(formula)
         say = speaker(quiet)
@@ -127,10 +127,12 @@ def measure(
         from profiletool.report import outputs
         from profiletool.report.bench import bench_output, bench_text, compare_json
         from profiletool.subject.tube.family import family_of
-        from profiletool.subject.tube.series import measure_series
+        from profiletool.subject.tube.series import measure_series, timed
 
         with progress_bar("pictures", quiet) as show:
             seen = measure_series(family_of(predicted), names, bars, load, looked, show)
+        if times is not None:
+            seen = timed(seen, times)
         output = bench_output(
             design, seen, predicted, "fe" if asked.fe else "response", chosen, load
         )
@@ -175,8 +177,11 @@ def _looked(asked: MeasureOptions) -> Looked:
 Load = Callable[[int], "Picture"]
 
 
-def _pictures(files: Sequence[Path], pressures: str) -> tuple[list[str], list[float], Load]:
-    """Give names, pressures and a loader of the pictures, or of a video's frames.
+Taken = tuple[list[str], list[float], list[float] | None, Load]
+
+
+def _pictures(files: Sequence[Path], pressures: str) -> Taken:
+    """Give names, pressures, times and a loader of the pictures, or of a video's frames.
 
     Raises
     ------
@@ -186,32 +191,39 @@ def _pictures(files: Sequence[Path], pressures: str) -> tuple[list[str], list[fl
     from profiletool.subject.tube.frames import frames_at, is_video
     from profiletool.subject.tube.views import picture_of
 
-    if any(is_video(file) for file in files):
-        if len(files) > 1:
-            raise UsageError("give one video, or pictures, not both")
-        if not pressures.lower().endswith(".csv"):
-            raise UsageError("a video needs `pressures` FILE.csv, with time_s and pressure_bar")
-        table = read_times(Path(pressures))
-        bars = [pressure for _, pressure in table]
-        _check_bars(bars)
-        frames = frames_at(files[0], [time for time, _ in table])
-        return [f"{files[0].name} {time:g} s" for time, _ in table], bars, frames.__getitem__
-    try:
-        bars = [float(part) for part in pressures.split(",")]
-    except ValueError:
-        raise UsageError(
-            f"`pressures` takes numbers with commas between, one a picture, not {pressures!r}"
-        ) from None
+    video = any(is_video(file) for file in files)
+    if video and len(files) > 1:
+        raise UsageError("give one video, or pictures, not both")
+    times = None
+    if pressures.lower().endswith(".csv"):
+        times, bars = (list(column) for column in zip(*read_times(Path(pressures)), strict=True))
+    elif video:
+        raise UsageError("a video needs `pressures` FILE.csv, with time_s and pressure_bar")
+    else:
+        bars = _listed(pressures)
     _check_bars(bars)
+    if video and times is not None:
+        frames = frames_at(files[0], times)
+        return [f"{files[0].name} {time:g} s" for time in times], bars, times, frames.__getitem__
     if len(bars) != len(files):
         raise UsageError(
             f"{len(files)} pictures and {len(bars)} pressures: give `pressures` one for each"
         )
-    if any(b <= a for a, b in pairwise(bars)):
+    if times is None and any(b <= a for a, b in pairwise(bars)):
         raise UsageError("`pressures` must rise from picture to picture: put both in that order")
     if len(files) > _MOST_PICTURES:
         raise UsageError(f"{len(files)} pictures: give {_MOST_PICTURES} at most")
-    return [file.name for file in files], bars, lambda k: picture_of(files[k])
+    return [file.name for file in files], bars, times, lambda k: picture_of(files[k])
+
+
+def _listed(pressures: str) -> list[float]:
+    try:
+        return [float(part) for part in pressures.split(",")]
+    except ValueError:
+        raise UsageError(
+            f"`pressures` takes numbers with commas between, one a picture, or a CSV, "
+            f"not {pressures!r}"
+        ) from None
 
 
 def _check_bars(bars: Sequence[float]) -> None:

@@ -13,6 +13,7 @@ from profiletool.records.bench import Seen
 from profiletool.records.setting import AngleReading
 
 COLUMNS = ("picture", "pressure_bar", "joint", "theta_deg", "sigma_deg", "state")
+TIME = "time_s"  # after them, where the times of the pictures are known
 _NEEDED = COLUMNS[1:4]
 _LOST = "lost"
 _MOST_BYTES = 20_000_000
@@ -27,6 +28,7 @@ def read_angles(path: Path | str) -> tuple[AngleReading, ...]:
     path : Path or str
         CSV with a head of names, of which ``pressure_bar``, ``joint`` and ``theta_deg`` must be
         there; ``sigma_deg`` is 1 where it is missing. Rows whose ``state`` is lost do not count.
+        ``time_s`` says when each was read.
 
     Raises
     ------
@@ -43,14 +45,16 @@ def read_angles(path: Path | str) -> tuple[AngleReading, ...]:
 
 def write_angles(seen: Sequence[Seen]) -> bytes:
     """Write the angles that pictures show; a joint that is lost has none."""
-    lines = [",".join(COLUMNS)]
+    timed = all(one.time_s is not None for one in seen)
+    lines = [",".join([*COLUMNS, TIME] if timed else COLUMNS)]
     for one in seen:
+        time = f",{one.time_s:g}" if timed else ""
         for joint, angle in enumerate(one.angles, start=1):
             lost = angle.state == _LOST
             value = "," if lost else f"{angle.theta_deg:.4f},{angle.sigma_deg:.4f}"
             picture = one.picture.replace('"', "'")
             name = f'"{picture}"' if "," in picture else picture
-            lines.append(f"{name},{one.pressure_bar:g},{joint},{value},{angle.state}")
+            lines.append(f"{name},{one.pressure_bar:g},{joint},{value},{angle.state}{time}")
     return ("\n".join(lines) + "\n").encode()
 
 
@@ -93,4 +97,5 @@ def _reading(row: dict[str, str], line: int) -> AngleReading:
     sigma = number("sigma_deg") if row.get("sigma_deg") else 1.0
     if sigma <= 0.0:
         raise UnreadableInput(f"line {line}: sigma_deg must be above 0, not {sigma:g}")
-    return AngleReading(pressure, int(joint), number("theta_deg"), sigma)
+    time = number(TIME) if TIME in row else None
+    return AngleReading(pressure, int(joint), number("theta_deg"), sigma, time)

@@ -27,6 +27,11 @@ def tube_json(tube: CalibratedTube) -> bytes:
 def load_tube(path: Path | str) -> CalibratedTube:
     """Read a tube file.
 
+    Parameters
+    ----------
+    path : Path or str
+        As `calibrate` on the command line writes it.
+
     Raises
     ------
     UnreadableInput

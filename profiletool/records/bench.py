@@ -84,6 +84,8 @@ class Seen:
         At the clamp.
     rms_px : float
         Of the believed edges about the fitted lines.
+    time_s : float or None
+        When the picture was taken, where that is known.
     """
 
     picture: str
@@ -96,6 +98,7 @@ class Seen:
     phalanges_mm: FloatArray
     mm_per_px: float
     rms_px: float
+    time_s: float | None = None
 
 
 @dataclass(frozen=True)

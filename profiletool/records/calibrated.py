@@ -41,6 +41,29 @@ class FittedNumber:
 
 
 @dataclass(frozen=True)
+class Relaxation:
+    """How rubber gives way while a pressure is held.
+
+    Attributes
+    ----------
+    share, share_sigma : float
+        Of the pressure, that acts late: the rubber is stiffer by about that much at first.
+    time_s, time_sigma_s : float
+        Time constant of an exponential.
+    """
+
+    share: float
+    share_sigma: float
+    time_s: float
+    time_sigma_s: float
+
+    @property
+    def told(self) -> bool:
+        """Whether it is more than chance."""
+        return self.share > 2.0 * self.share_sigma
+
+
+@dataclass(frozen=True)
 class CalibratedTube:
     """A tube file.
 
@@ -70,6 +93,8 @@ class CalibratedTube:
         Of the data's slopes, every number over its prior's sigma: below 1 the prior tells more.
     untold : tuple of str
         Combinations of the numbers that the data cannot tell.
+    relaxation : Relaxation or None
+        None where no pressure was held. Rubber and wall are those of the relaxed tube.
     """
 
     design: str
@@ -89,6 +114,7 @@ class CalibratedTube:
     held_out_deg: float | None
     singular_values: tuple[float, ...]
     untold: tuple[str, ...]
+    relaxation: Relaxation | None = None
 
 
 def with_tube(design: Design, tube: CalibratedTube | None) -> Design:
@@ -113,7 +139,7 @@ def with_tube(design: Design, tube: CalibratedTube | None) -> Design:
 
 
 def request_with(request: Request, tube: CalibratedTube | None) -> Request:
-    """Ask for a design in this tube, with the errors that are left after its calibration.
+    """Make a request one for this tube, with the errors that its calibration leaves.
 
     Where the errors of the build are the usual ones, rubber and wall are as sure as fitted.
     """

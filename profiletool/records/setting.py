@@ -19,12 +19,15 @@ class AngleReading:
         Positive toward the object; where the joint bends away from it, a magnitude will do.
     sigma_deg : float
         Standard deviation of the reading.
+    time_s : float or None
+        When it was read, where that is known.
     """
 
     pressure_bar: float
     joint: int
     theta_deg: float
     sigma_deg: float = 1.0
+    time_s: float | None = None
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from profiletool.records.calibrated import CalibratedTube, FittedNumber
+from profiletool.records.calibrated import CalibratedTube, FittedNumber, Relaxation
 
 
 def tube_text(tube: CalibratedTube) -> str:
@@ -13,6 +13,7 @@ def tube_text(tube: CalibratedTube) -> str:
         f"{tube.readings} angles at {len(tube.pressures_bar)} pressures, "
         f"{tube.pressures_bar[0]:g} to {tube.pressures_bar[-1]:g} bar",
         *(_number(one) for one in tube.fitted),
+        *([] if tube.relaxation is None else [_relaxes(tube.relaxation)]),
         f"fit: {tube.rmse_deg:.2f} deg RMS, {tube.expected_deg:.2f} expected of the readings",
     ]
     if tube.held_out_deg is not None:
@@ -28,6 +29,14 @@ def tube_text(tube: CalibratedTube) -> str:
             "the design is another one; `angles` given to trim name the joint"
         )
     return "\n".join(lines) + "\n"
+
+
+def _relaxes(one: Relaxation) -> str:
+    share = f"{100.0 * one.share:+6.1f} +-{100.0 * one.share_sigma:4.1f} %"
+    if not one.told:
+        return f"rubber relaxes by          {share}   (no more than chance)"
+    time = f"in {one.time_s:.3g} +-{one.time_sigma_s:.2g} s"
+    return f"rubber relaxes by          {share} {time}; all else is of the relaxed tube"
 
 
 def _number(one: FittedNumber) -> str:

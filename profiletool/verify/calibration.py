@@ -1,7 +1,7 @@
 """The calibration of a prototype: rubber, gauge, threads and wall, from its measured angles.
 
 Least squares with priors, by finite elements: a run at the design's own numbers tells where the
-tube is, and a run there settles it.
+tube is, and a run there settles it. Where pressures were held, relaxation is fitted as well.
 """
 
 from __future__ import annotations
@@ -13,14 +13,17 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from profiletool.errors import UnreadableInput
-from profiletool.records.calibrated import CalibratedTube, FittedNumber
+from profiletool.records.calibrated import CalibratedTube, FittedNumber, Relaxation
 from profiletool.records.design import Design
 from profiletool.records.setting import AngleReading
 from profiletool.records.units import BoolArray, FloatArray, IntArray
+from profiletool.verify.relaxation import History
 from profiletool.verify.surrogate import DEAD, Surrogate, surrogate_at, tube_by
 
 NAMES = ("rubber", "dead", "thread", "wall")
 PRIOR = np.array([0.15, 0.1, 6.0, 0.1])  # sigmas: of ln stiffness, bar, deg, mm
+_LATE = np.array([0.1, 2.0])  # of the share that acts late, and of the ln of its time
+_USUAL_S, _TRIED = 30.0, (-2.5, 0.0, 2.5)  # of that time; ln of it over that, that fits start from
 _WAYS = ("rubber {:+.0f} %", "dead pressure {:+.2f} bar", "sectors {:+.1f} deg", "wall {:+.2f} mm")
 _MODEL_DEG = 0.1  # what finite elements are off by, whatever the tube
 _SOFTEST = 1.3  # of the highest pressure: up to it a run goes when nothing is known of the tube
@@ -30,12 +33,14 @@ _LEAST_SHARE = 0.3  # of a combination, that a number is named for
 
 @dataclass(frozen=True)
 class Data:
-    """Readings as arrays (N,): bar on the gauge, joints from 0, deg."""
+    """Readings as arrays (N,): bar on the gauge, joints from 0, deg; places in a history."""
 
     bars: FloatArray
     joints: IntArray
     theta: FloatArray
     sigma: FloatArray
+    history: History | None = None
+    moments: IntArray | None = None
 
     @staticmethod
     def of(readings: Sequence[AngleReading], design: Design) -> Data:
@@ -58,20 +63,39 @@ class Data:
         joints = np.array([one.joint - 1 for one in taken])
         theta = np.array([one.theta_deg for one in taken])
         away = np.array([joint.away for joint in design.joints])[joints]
+        history = History.of(readings)
+        times = None if history is None else np.array([one.time_s for one in taken], float)
         return Data(
             np.array([one.pressure_bar for one in taken]),
             joints,
             np.where(away, -np.abs(theta), theta),
             np.hypot([one.sigma_deg for one in taken], _MODEL_DEG),
+            history,
+            None if history is None or times is None else history.moments(times),
         )
+
+    @property
+    def prior(self) -> FloatArray:
+        """Sigmas of what is fitted: the four numbers, and relaxation where pressures were held."""
+        return PRIOR if self.history is None else np.concatenate([PRIOR, _LATE])
 
     def chosen(self, some: BoolArray) -> Data:
         """Take some of them."""
-        return Data(self.bars[some], self.joints[some], self.theta[some], self.sigma[some])
+        parts = (self.bars[some], self.joints[some], self.theta[some], self.sigma[some])
+        return Data(*parts, self.history, None if self.moments is None else self.moments[some])
+
+    def predicted(self, known: Surrogate, values: FloatArray) -> FloatArray:
+        """Give the angles of a tube of such numbers, deg."""
+        bars = self.bars
+        if self.history is not None:
+            share, log_time = values[4:].tolist()
+            acting = self.history.acting(share, _USUAL_S * np.exp(log_time), float(values[DEAD]))
+            bars = acting[self.moments]
+        return known.angles(values[:4], bars, self.joints)
 
     def off(self, known: Surrogate, values: FloatArray) -> FloatArray:
         """Measured less predicted angles, deg."""
-        return self.theta - known.angles(values, self.bars, self.joints)
+        return self.theta - self.predicted(known, values)
 
 
 def calibrate(
@@ -100,7 +124,7 @@ def calibrate(
     UnreadableInput, NotVerified
     """
     data = Data.of(readings, design)
-    values, most = np.zeros(4), float(data.bars.max())
+    values, most = np.zeros(len(data.prior)), float(data.bars.max())
     top = _SOFTEST * most
     for turn in range(_ROUNDS):
 
@@ -108,10 +132,10 @@ def calibrate(
             if progress is not None:
                 progress((turn + share) / _ROUNDS)
 
-        known = surrogate_at(design, values, top, told)
+        known = surrogate_at(design, values[:4], top, told)
         last, values = values, fitted(data, known, values)
         top = 1.05 * max(most - float(values[DEAD]), 0.5 * most)
-        if turn and np.abs((values - last) / PRIOR).max() < _CLOSE:
+        if turn and np.abs((values - last) / data.prior)[:4].max() < _CLOSE:
             break
     return _tube(design, data, known, values, date, cycles)
 
@@ -119,29 +143,37 @@ def calibrate(
 def fitted(
     data: Data, known: Surrogate, start: FloatArray, kept: dict[int, float] | None = None
 ) -> FloatArray:
-    """Fit the four numbers; those ``kept`` stay."""
-    free = np.array([k not in (kept or {}) for k in range(4)])
-    base = start.copy()
+    """Fit the numbers; those ``kept`` stay."""
+    prior, base = data.prior, start.copy()
+    free = np.array([k not in (kept or {}) for k in range(len(base))])
     for k, value in (kept or {}).items():
         base[k] = value
 
     def residuals(some: FloatArray) -> FloatArray:
         values = base.copy()
-        values[free] = PRIOR[free] * some
+        values[free] = prior[free] * some
         return np.concatenate([data.off(known, values) / data.sigma, some])
 
-    found = least_squares(residuals, base[free] / PRIOR[free], method="lm", x_scale="jac")
-    base[free] = PRIOR[free] * found.x
+    starts = [base] if data.history is None else [_starting(base, log) for log in _TRIED]
+    found = min(
+        (least_squares(residuals, one[free] / prior[free], method="lm") for one in starts),
+        key=lambda fit: float(fit.cost),
+    )
+    base[free] = prior[free] * found.x
     return base
 
 
+def _starting(values: FloatArray, log_time: float) -> FloatArray:
+    return np.concatenate([values[:4], [0.5 * _LATE[0], log_time]])
+
+
 def slopes(data: Data, known: Surrogate, values: FloatArray) -> FloatArray:
-    """Slopes of the angles by every number, over their sigma and times its prior's: (N, 4)."""
+    """Slopes of the angles by every number, over their sigma and times its prior's: (N, V)."""
     columns = []
-    for k in range(4):
-        step = np.zeros(4)
-        step[k] = 1e-4 * PRIOR[k]
-        ends = [known.angles(values + s * step, data.bars, data.joints) for s in (1.0, -1.0)]
+    for k, sigma in enumerate(data.prior.tolist()):
+        step = np.zeros(len(values))
+        step[k] = 1e-4 * sigma
+        ends = [data.predicted(known, values + s * step) for s in (1.0, -1.0)]
         columns.append((ends[0] - ends[1]) / 2e-4 / data.sigma)
     return np.column_stack(columns)
 
@@ -165,10 +197,10 @@ def _tube(
     A = slopes(data, known, values)
     off = data.off(known, values)
     excess = float(np.sum((off / data.sigma) ** 2)) / max(len(off) - 2, 1)
-    inverse = np.linalg.inv(A.T @ A / max(1.0, excess) + np.eye(4))
-    sigma = PRIOR * np.sqrt(np.diag(inverse))
-    _, singular, ways = np.linalg.svd(A, full_matrices=False)
-    built = tube_by(design, values)
+    inverse = np.linalg.inv(A.T @ A / max(1.0, excess) + np.eye(len(values)))
+    sigma = data.prior * np.sqrt(np.diag(inverse))
+    _, singular, ways = np.linalg.svd(A[:, :4], full_matrices=False)
+    built = tube_by(design, values[:4])
     rubber = built.tube.rubber
     assert rubber is not None
     return CalibratedTube(
@@ -192,7 +224,13 @@ def _tube(
         held_out_deg=held_out(data, known, values),
         singular_values=tuple(singular.tolist()),
         untold=tuple(_combination(way) for way, s in zip(ways, singular, strict=True) if s < 1.0),
+        relaxation=None if data.history is None else _relaxation(values[4:], sigma[4:]),
     )
+
+
+def _relaxation(values: FloatArray, sigma: FloatArray) -> Relaxation:
+    time_s = _USUAL_S * float(np.exp(values[1]))
+    return Relaxation(float(values[0]), float(sigma[0]), time_s, time_s * float(sigma[1]))
 
 
 def _combination(way: FloatArray) -> str:

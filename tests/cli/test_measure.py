@@ -8,6 +8,8 @@ from pathlib import Path
 import cv2
 import pytest
 
+from profiletool.cli.measure import _pictures
+from profiletool.errors import UsageError
 from tests.calls import Result, call, error_of
 from tests.subject.tube.drawn import MM_PER_PX, family, picture
 
@@ -72,6 +74,16 @@ def test_bad_usage_is_one_line_and_leaves_nothing(
     assert result.exit_code == code
     assert said in error_of(result)
     assert not out.exists()
+
+
+def test_pictures_over_time_may_be_at_one_pressure(shot: Path, tmp_path: Path) -> None:
+    table = tmp_path / "times.csv"
+    table.write_text("time_s,pressure_bar\n0,0.6\n5,0.6\n")
+    names, bars, times, load = _pictures([shot, shot], str(table))
+    assert (names, bars, times) == (["a.png", "a.png"], [0.6, 0.6], [0.0, 5.0])
+    assert load(1).rgb.shape == (760, 760, 3)
+    with pytest.raises(UsageError, match="1 pictures and 2 pressures"):
+        _pictures([shot], str(table))
 
 
 def test_no_picture_and_no_design(samples: Path, shot: Path, tmp_path: Path) -> None:

@@ -19,12 +19,15 @@ from profiletool import (
     files_of,
     find_subject,
     load_design,
+    measure_pictures,
     plan_joints,
+    readings_of,
     trim_pressure,
     verify_design,
 )
 from profiletool.errors import NoObject, NoScale, UnreadableInput, UsageError
 from profiletool.pipeline import Result
+from tests.subject.tube.drawn import MM_PER_PX, family, picture
 
 T = np.linspace(0.0, 2.0 * np.pi, 400, endpoint=False)
 EGG = np.column_stack([30.0 * np.cos(T) * (1.0 - 0.15 * np.sin(T)), 42.0 * np.sin(T)])
@@ -158,3 +161,43 @@ def test_a_joint_changed_by_hand_is_verified_anew(made: Result) -> None:
     assert trim_pressure(again, tip_mm=row.tip_mm, at_bar=row.pressure_bar).stiffness == (
         pytest.approx(1.0, abs=1e-3)
     )
+
+
+@pytest.mark.parametrize(
+    ("pictures", "bars", "says"),
+    [
+        (["a.jpg"], [0.3, 0.6], "one pressure for each"),
+        (["a.jpg", "b.jpg"], [0.6, 0.3], "rising"),
+        ([], [], "0 to 20 bar"),
+        (["a.jpg"], [0.0], "at rest tells nothing"),
+        (["a.jpg"], [float("nan")], "0 to 20 bar"),
+        ([np.zeros((4, 5))], [0.6], "uint8, not"),
+    ],
+)
+def test_pictures_that_cannot_be_measured(
+    samples: Path, pictures: list[str], bars: list[float], says: str
+) -> None:
+    bulb = load_design(samples / "paper_bulb.json")
+    with pytest.raises(UsageError, match=says):
+        measure_pictures(bulb, pictures, bars, mm_per_px=0.2, fe=False)
+
+
+def test_times_rise(samples: Path) -> None:
+    bulb = load_design(samples / "paper_bulb.json")
+    with pytest.raises(UsageError, match="times_s"):
+        measure_pictures(bulb, ["a.jpg"] * 2, [0.6] * 2, times_s=[1.0, 1.0], fe=False)
+
+
+@pytest.mark.slow
+def test_pictures_are_measured_and_read(samples: Path) -> None:
+    bulb = load_design(samples / "paper_bulb.json")
+    known = family(samples)
+    shot = picture(known, 0.8)
+    seen = measure_pictures(bulb, [shot.rgb], [0.8], mm_per_px=MM_PER_PX, fe=False)
+    readings = readings_of(seen)
+    assert [one.joint for one in readings] == [1, 2, 3, 4, 5, 6]
+    for one, true in zip(readings, known.theta_deg(0.8, np.zeros(6)), strict=True):
+        assert abs(one.theta_deg - true) < 3.0 * one.sigma_deg
+    one, *others = seen[0].angles
+    lost = replace(seen[0], angles=(replace(one, state="lost"), *others))
+    assert [reading.joint for reading in readings_of([lost])] == [2, 3, 4, 5, 6]

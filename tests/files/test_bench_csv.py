@@ -52,17 +52,19 @@ def test_bad_lines(row: str, said: str, tmp_path: Path) -> None:
         read_hand_lines(written(tmp_path, f"{head}{row}\n"))
 
 
-def test_measured_angles_come_back(tmp_path: Path) -> None:
+@pytest.mark.parametrize("time_s", [None, 12.5])
+def test_measured_angles_come_back(time_s: float | None, tmp_path: Path) -> None:
     angles = (
         Angle(20.5, 0.4, "measured"),
         Angle(np.nan, np.nan, "lost"),
         Angle(-8.0, 1.2, "by hand"),
     )
     none = np.zeros((0, 2))
-    seen = Seen("a, b.png", 1.2, angles, none, none, none, none, none, 0.1, 0.2)
+    seen = Seen("a, b.png", 1.2, angles, none, none, none, none, none, 0.1, 0.2, time_s)
     (tmp_path / "a.csv").write_bytes(write_angles([seen]))
-    assert (tmp_path / "a.csv").read_text().splitlines()[2] == '"a, b.png",1.2,2,,,lost'
+    more = "" if time_s is None else ",12.5"
+    assert (tmp_path / "a.csv").read_text().splitlines()[2] == f'"a, b.png",1.2,2,,,lost{more}'
     found = read_angles(tmp_path / "a.csv")
-    assert [(one.joint, one.theta_deg, one.sigma_deg) for one in found] == [
-        (1, 20.5, 0.4), (3, -8.0, 1.2),
+    assert [(one.joint, one.theta_deg, one.sigma_deg, one.time_s) for one in found] == [
+        (1, 20.5, 0.4, time_s), (3, -8.0, 1.2, time_s),
     ]  # fmt: skip

@@ -38,7 +38,7 @@ class Outline:
 
 @dataclass(frozen=True)
 class Family:
-    """Outlines over the pressure, the joints' own turns and lengthenings; J joints.
+    """Outlines over the pressure, the joints' own turns, lengthenings and shifts; J joints.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class Family:
     turning : (J, S)
         Share of a joint's turn that is made before each place: 0 to 1.
     lengthening : (J, S)
-        Share of its lengthening.
+        Share of its lengthening, and of its shift.
     sector : (S,) int
         Wrapped sector of every place, from 0; -1 in a cut.
     middles : (J + 1,) int
@@ -82,7 +82,9 @@ class Family:
         """Half of the width at rest, mm."""
         return float(np.median(self.fields(0.0)[1]))
 
-    def outline(self, bar: float, turn: FloatArray, grow: FloatArray) -> Outline:
+    def outline(
+        self, bar: float, turn: FloatArray, grow: FloatArray, shift: FloatArray | None = None
+    ) -> Outline:
         """Bend the tube: as the model does at a pressure, each joint then by its own (J,) more.
 
         Parameters
@@ -90,12 +92,15 @@ class Family:
         bar : float
         turn : (J,) rad
             Toward the object.
-        grow : (J,) mm
+        grow, shift : (J,) mm
+            Along the tube, and across it, away from the object.
         """
-        heading, half, ahead, aside = self.fields(np.clip(bar, 0.0, _BEYOND * self.top))
-        heading = heading + turn @ self.turning
-        ahead = ahead.copy()
-        ahead[1:] += grow @ np.diff(self.lengthening, axis=1)
+        heading, half, ahead, aside = self.fields(np.clip(bar, 0.0, _BEYOND * self.top)).copy()
+        heading += turn @ self.turning
+        inside = np.diff(self.lengthening, axis=1)
+        ahead[1:] += grow @ inside
+        if shift is not None:
+            aside[1:] += shift @ inside
         out = outward(heading, 1.0)
         middle = np.concatenate([heading[:1], 0.5 * (heading[1:] + heading[:-1])])
         steps = ahead[:, None] * direction(middle) + aside[:, None] * outward(middle, 1.0)

@@ -1,4 +1,4 @@
-"""The tube fitted to the edges of a picture: place, scale, the joints' turns and lengthenings.
+"""The tube fitted to the edges of a picture: place, scale, and how each joint is off the model.
 
 Edges are looked for across the predicted lines of the wrapped sectors, within a reach that
 narrows from round to round; each round is a robust linear fit.
@@ -79,7 +79,7 @@ def fit_tube(
         [believed[rows.sector == k].mean() if (rows.sector == k).any() else 0.0
          for k in range(family.joints + 1)]
     )  # fmt: skip
-    outline = camera.lines(family.outline(tube.bar, tube.turn, tube.grow), tube.place, tube.size)
+    outline = camera.lines(tube.outline(family), tube.place, tube.size)
     rms = float(np.sqrt(np.mean(residual[believed] ** 2))) if believed.any() else np.nan
     return Fitted(
         tube, covariance, rows.px[rows.seen], rows.sector[rows.seen], believed[rows.seen],
@@ -93,7 +93,7 @@ def _kept(tube: Tube, family: Family) -> Tube:
 
 def _free(family: Family, whole: bool) -> BoolArray:
     """Which values are fitted: the model's pressure, or each joint by itself."""
-    joints = np.full(2 * family.joints, not whole)
+    joints = np.full(3 * family.joints, not whole)
     return np.concatenate([[True] * 4, [whole], joints])
 
 

@@ -22,7 +22,7 @@ _LONG = 2.5  # length over width, from which a spot is a ring
 
 def mark_lines(picture: Shown, camera: Camera, family: Family, tube: Tube) -> dict[int, Line]:
     """Find painted marks: a line for every wrapped sector that has a ring, or two dots."""
-    outline = family.outline(tube.bar, tube.turn, tube.grow)
+    outline = tube.outline(family)
     lines = camera.lines(outline, tube.place, tube.size)
     px_per_mm = float(np.linalg.norm(lines[1, 0] - lines[0, 0])) / (2.0 * float(outline.half[0]))
     spots = _spots(picture, lines, px_per_mm)

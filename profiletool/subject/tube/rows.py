@@ -14,8 +14,10 @@ from profiletool.subject.tube.family import Family
 from profiletool.subject.tube.values import Known, Line, Tube
 
 # Standard deviations before any edge is seen: of a joint's own turn, and of that over its angle;
-# of a lengthening; of the model's pressure over itself.
+# of a lengthening; of the model's pressure over itself; of a shift. In another rubber or gauze a
+# cut bends a little nearer one of its ends: what lies beyond is shifted, the more it turns.
 _TURN_RAD, _TURN_SHARE, _GROW_MM, _BAR_SHARE = np.radians(1.0), 0.12, 1.0, 0.3
+_SHIFT_MM, _SHIFT_MM_RAD = 0.01, 0.1
 _MARGIN_MM, _SPACING_MM = 0.25, 0.5  # of the places that are looked at
 _WIDTH_MM = 0.06  # standard deviation of the tube's width along it
 _WIDE_MM, _SPARSE_MM = 1.5, 1.5  # a reach, from which on they stand that far apart
@@ -49,8 +51,7 @@ class Gaps:
 
 
 def _lines(camera: Camera, family: Family, tube: Tube) -> FloatArray:
-    outline = family.outline(tube.bar, tube.turn, tube.grow)
-    return camera.lines(outline, tube.place, tube.size)
+    return camera.lines(tube.outline(family), tube.place, tube.size)
 
 
 def _slopes(camera: Camera, family: Family, tube: Tube, base: FloatArray) -> FloatArray:
@@ -133,9 +134,11 @@ def turn_sigma(family: Family, bar: float) -> FloatArray:
 
 def prior_gaps(family: Family, tube: Tube, camera: Camera, known: Known | None) -> Gaps:
     """Say what is thought of the values before any edge is seen."""
+    theta = np.radians(np.abs(family.theta_deg(tube.bar, tube.turn)))
     sigma = np.concatenate(
         [[1e3, 1e3, 10.0, camera.sigma, _BAR_SHARE * max(tube.bar, 0.1)],
-         turn_sigma(family, tube.bar), np.full(family.joints, _GROW_MM)]
+         turn_sigma(family, tube.bar), np.full(family.joints, _GROW_MM),
+         _SHIFT_MM + _SHIFT_MM_RAD * theta]
     )  # fmt: skip
     off = -tube.values() / sigma
     off[[0, 1, 2, 4]] = 0.0

@@ -101,6 +101,11 @@ def measure_series(
     return tuple(made[k] for k in range(len(bars)))
 
 
+def timed(seen: Sequence[Seen], times_s: Sequence[float]) -> tuple[Seen, ...]:
+    """Say when the pictures were taken."""
+    return tuple(replace(one, time_s=float(time)) for one, time in zip(seen, times_s, strict=True))
+
+
 def _fitted(view: View, family: Family, looked: Looked, last: _Fit | None) -> _Fit:
     """Fit a picture, from the one beside it where it can, else from a search of its own."""
     if last is not None and last.view.bar > 0.0:
@@ -227,7 +232,7 @@ def _seen(fit: _Fit, family: Family) -> Seen:
     """Read angles and lines off a fit."""
     fitted, view = fit.fitted, fit.view
     tube = fitted.tube
-    outline = family.outline(tube.bar, tube.turn, tube.grow)
+    outline = tube.outline(family)
     lines = view.camera.lines(outline, tube.place, tube.size)
     none = np.zeros(family.joints)
     planned = view.camera.lines(family.outline(view.bar, none, none), tube.place, tube.size)

@@ -8,7 +8,7 @@ import numpy as np
 
 from profiletool.records.units import BoolArray, FloatArray, IntArray
 from profiletool.subject.tube.camera import Place
-from profiletool.subject.tube.family import Family
+from profiletool.subject.tube.family import Family, Outline
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Tube:
         As the camera takes it.
     bar : float
         The model's pressure.
-    turn, grow : (J,) rad, mm
+    turn, grow, shift : (J,) rad, mm, mm
         Of the joints, beyond the model's.
     """
 
@@ -31,17 +31,22 @@ class Tube:
     bar: float
     turn: FloatArray
     grow: FloatArray
+    shift: FloatArray
 
     def values(self) -> FloatArray:
-        """All as one vector: x, y, heading, size, bar, turns, lengthenings."""
-        at = self.place
-        return np.array([at.x, at.y, at.heading, self.size, self.bar, *self.turn, *self.grow])
+        """All as one vector: x, y, heading, size, bar, turns, lengthenings, shifts."""
+        at, joints = self.place, (self.turn, self.grow, self.shift)
+        return np.array([at.x, at.y, at.heading, self.size, self.bar, *np.concatenate(joints)])
 
     def of(self, values: FloatArray) -> Tube:
         """Give the same with other values."""
         x, y, heading, size, bar = values[:5].tolist()
-        turn, grow = np.split(values[5:], 2)
-        return Tube(Place(x, y, heading, self.place.hand), size, bar, turn, grow)
+        turn, grow, shift = np.split(values[5:], 3)
+        return Tube(Place(x, y, heading, self.place.hand), size, bar, turn, grow, shift)
+
+    def outline(self, family: Family) -> Outline:
+        """Give its lines."""
+        return family.outline(self.bar, self.turn, self.grow, self.shift)
 
 
 @dataclass(frozen=True)
@@ -86,7 +91,7 @@ class Fitted:
     Attributes
     ----------
     tube : Tube
-    covariance : (5 + 2 J, 5 + 2 J)
+    covariance : (5 + 3 J, 5 + 3 J)
         Of its values.
     px : (M, 2)
         Edges that were seen.
@@ -114,4 +119,4 @@ class Fitted:
 def start_of(family: Family, place: Place, bar: float) -> Tube:
     """Begin with a tube as the model has it."""
     none = np.zeros(family.joints)
-    return Tube(place, 0.0, bar, none, none)
+    return Tube(place, 0.0, bar, none, none, none)

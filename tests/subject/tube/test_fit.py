@@ -64,6 +64,13 @@ def test_a_joint_lengthened_moves_all_beyond_it(known: Family) -> None:
     assert off[-1] == pytest.approx([2.0, 0.0], abs=1e-9)
 
 
+def test_a_joint_shifted_moves_all_beyond_it_across(known: Family) -> None:
+    none, shift = np.zeros(6), np.array([0.0, 0.0, 0.0, 0.5, 0.0, 0.0])
+    off = known.outline(0.0, none, none, shift).axis - known.outline(0.0, none, none).axis
+    assert off[known.middles[3]] == pytest.approx([0.0, 0.0], abs=1e-9)
+    assert off[-1] == pytest.approx([0.0, -0.5], abs=1e-6)  # away from the object
+
+
 @pytest.mark.parametrize("at", [40.0, 40.3, 39.55])
 def test_an_edge_is_found_between_pixels(at: float) -> None:
     x = np.arange(80.0)
