@@ -18,7 +18,8 @@ from tests.calls import call
 OTHER: dict[str, Any] = {
     "height_mm": 107.5, "width_mm": 60.0, "mm_per_px": 0.1, "marker_mm": 40.0,
     "camera_distance_mm": 800.0, "box": [10, 20.5, 300, 400], "point": [50, 60],
-    "mask": "mask_0.png", "candidate": 2, "rotate": -12.5, "symmetric": True, "flat": True, "layer": "0 ä\"'\\",
+    "mask": "mask_0.png", "candidate": 2, "rotate": -12.5, "symmetric": True, "flat": True,
+    "layer": "0 ä\"'\\",
     "side": "right", "start_pct": 12.5, "end_pct": 80, "clearance_mm": 0.5,
     "outer_diameter_mm": 16.0, "wall_mm": 1.6, "root_mm": 12.0, "clamp_mm": 25.0,
     "pitch_mm": 2.5, "pressure_bar": 1.31, "max_pressure_bar": 1.5, "max_length_mm": 200.0,
