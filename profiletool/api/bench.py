@@ -66,7 +66,7 @@ def measure_pictures(
     if len(bars) != len(pictures) or (times is None and not _rise(bars)):
         raise UsageError("`pressures_bar` holds one pressure for each picture, rising")
     if times is not None and not (len(times) == len(pictures) and _rise(times)):
-        raise UsageError("`times_s` holds one time for each picture, rising")
+        raise UsageError("times_s holds one time for each picture, rising")
     if not bars or not (min(bars) >= 0.0 and 0.0 < max(bars) <= MOST_BAR):
         raise UsageError(
             f"`pressures_bar` must be 0 to {MOST_BAR:g} bar, not all 0: an actuator at rest tells "

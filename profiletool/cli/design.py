@@ -154,7 +154,7 @@ def conclude(result: Result, folder: Path, say: Callable[[str], None], again: st
     if result.check is not None and result.check.failure is not None:
         raise NotVerified(
             f"finite elements: {result.check.failure}; the design is in {folder}, marked NOT "
-            "VERIFIED; try a lower `max_pressure_bar`"
+            f"VERIFIED; try a lower {'`pressure_bar`' if again else '`max_pressure_bar`'}"
         )
 
 

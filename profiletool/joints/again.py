@@ -28,6 +28,8 @@ from profiletool.records.units import BAR_PER_MPA
 
 S = TypeVar("S")
 
+_LEAST_WRAP = 0.02  # of the diameter: less gauze between two cuts cannot be modelled
+
 
 def edited(design: Design, edit: Edit) -> Design:
     """Change a design by hand: its joints and pressure; what follows from them is left as it was.
@@ -84,10 +86,11 @@ def _check(design: Design, joints: tuple[Joint, ...], pressure_bar: float) -> No
     if ends[0][0] <= 0.0:
         raise UsageError("joint 1 would be cut into the clamp; `move_mm` it less, or cut it less")
     for (_, end), (start, _), joint in zip(ends, ends[1:], joints[1:], strict=False):
-        if start < end:
+        if start - end < _LEAST_WRAP * design.tube.outer_diameter_mm - 1e-9:
+            left = f"overlap by {end - start:g}" if start < end else f"leave only {start - end:g}"
             raise UsageError(
-                f"the cuts of joints {joint.number - 1} and {joint.number} would overlap by "
-                f"{end - start:g} mm; `move_mm` it less, or cut it less"
+                f"the cuts of joints {joint.number - 1} and {joint.number} would {left} mm"
+                f"{'' if start < end else ' of gauze'}; `move_mm` it less, or cut it less"
             )
     if ends[-1][1] >= design.tube.length_mm:
         raise UsageError(f"joint {len(joints)} would lie beyond the tube's closed end")

@@ -47,6 +47,7 @@ def test_what_is_given_is_changed_and_nothing_else(design: Design) -> None:
         (Edit(1, openF_mm=7.0), "whole meshes of 2 mm, not 7"),
         (Edit(1, openF_mm=0.0), "whole meshes"),
         (Edit(2, move_mm=12.0), "joints 2 and 3 would overlap by 1 mm"),
+        (Edit(2, move_mm=11.0), "joints 2 and 3 would leave only 0 mm of gauze"),
         (Edit(1, move_mm=-6.0), "into the clamp"),
         (Edit(6, move_mm=8.0), "beyond the tube's closed end"),
         (Edit(pressure_bar=-1.0), "`pressure_bar` must be above 0"),
