@@ -231,8 +231,17 @@ def test_the_page_fits(browser: Browser, server: Server, width: int, dark: bool)
 def test_what_a_killed_server_leaves(browser: Browser, server: Server, samples: Path) -> None:
     page = Page(browser)
     browser.open(server.address)
-    page.wait(JOINTS)
+    page.wait(f"({JOINTS}) || ({FOUND})")
+    if not page.js(JOINTS):  # where this test runs alone
+        page.choose("verify", "no")
+        page.wait(f"{IDLE} && {FOUND}")
+        page.click("#design")
+        page.wait(JOINTS)
+        page.click("#tab-object")
+        page.choose("verify", "yes")
+        page.wait(f"{IDLE} && {FOUND}")
     versions = sorted(path.name for path in server.work.glob("*.json"))
+    undone = page.js("document.getElementById('undo').disabled")
     page.click("#tab-object")
     page.wait(FOUND)
     page.click("#design")
@@ -254,7 +263,7 @@ def test_what_a_killed_server_leaves(browser: Browser, server: Server, samples: 
     server.start(samples / "bulb.png")
     browser.open(server.address)
     page.wait(JOINTS)
-    assert not page.js("document.getElementById('undo').disabled")
+    assert page.js("document.getElementById('undo').disabled") == undone
     second = subprocess.run(
         [sys.executable, "-m", "profiletool", "studio", "--no-browser", "--port",
          server.address.split(":")[2].split("/")[0]],

@@ -47,10 +47,15 @@ async function poll() {
   timer = setTimeout(poll, state?.running ? BUSY_MS : IDLE_MS);
 }
 
+// What the user does reaches the server in that order: a cancel after what it ends.
+let last = Promise.resolve();
+
 async function act(call) {
   try {
     say("");
-    await call();
+    const done = last.then(call);
+    last = done.catch(() => {});
+    await done;
   } catch (error) {
     if (!(error instanceof Refused)) return poll();
     say(error.message);
