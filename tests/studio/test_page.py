@@ -226,3 +226,50 @@ def test_the_page_fits(browser: Browser, server: Server, width: int, dark: bool)
             .map(e => e.outerHTML)"""
         assert page.js(small) == []
     assert browser.complaints == []
+
+
+def test_what_a_killed_server_leaves(browser: Browser, server: Server, samples: Path) -> None:
+    page = Page(browser)
+    browser.open(server.address)
+    page.wait(f"({JOINTS}) || ({FOUND})")
+    if not page.js(JOINTS):  # where this test runs alone
+        page.choose("verify", "no")
+        page.wait(f"{IDLE} && {FOUND}")
+        page.click("#design")
+        page.wait(JOINTS)
+        page.click("#tab-object")
+        page.choose("verify", "yes")
+        page.wait(f"{IDLE} && {FOUND}")
+    versions = sorted(path.name for path in server.work.glob("*.json"))
+    undone = page.js("document.getElementById('undo').disabled")
+    page.click("#tab-object")
+    page.wait(FOUND)
+    page.click("#design")
+    page.wait(f"!{IDLE}")
+    page.click("#cancel")
+    page.wait(IDLE)
+    assert "stopped" in page.text("said")
+    page.click("#design")
+    page.wait(f"!{IDLE}")
+    workers = server.workers
+    assert workers
+    server.end(signal.SIGKILL)
+    page.wait("!document.getElementById('gone').hidden")
+    assert "Nothing is lost" in page.text("gone")
+    for number in workers:
+        while Path(f"/proc/{number}").exists():
+            time.sleep(0.05)
+    assert sorted(path.name for path in server.work.glob("*.json")) == versions
+    server.start(samples / "bulb.png")
+    browser.open(server.address)
+    page.wait(JOINTS)
+    assert page.js("document.getElementById('undo').disabled") == undone
+    second = subprocess.run(
+        [sys.executable, "-m", "profiletool", "studio", "--no-browser", "--port",
+         server.address.split(":")[2].split("/")[0]],
+        cwd=server.work.parent, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True,
+        text=True, check=False,
+    )  # fmt: skip
+    assert second.returncode == 1
+    assert second.stderr.startswith("error: port ")
+    assert second.stderr.count("\n") == 1

@@ -17,12 +17,17 @@ let timer = null;
 
 // --- asking ----------------------------------------------------------------------------------
 
+let asked = 0;
+
 async function poll() {
   clearTimeout(timer);
+  asked += 1;
+  const mine = asked;
   try {
     const known = found ? state?.found_revision : "";
     const turns = ask.turns();
     const next = await get(`state?found=${known ?? ""}`);
+    if (mine !== asked) return; // a younger question is under way, and answers can overtake each other
     by("gone").hidden = true;
     const started = state?.current !== next.current && next.current !== null;
     if ("found" in next) found = next.found;
@@ -38,6 +43,7 @@ async function poll() {
     if (turns === ask.turns() && ask.settled()) ask.fill(state.values);
     if (changed || state.running) show();
   } catch (error) {
+    if (mine !== asked) return;
     const restarted = error instanceof Refused;
     by("gone").textContent = restarted
       ? "The studio was started again: open the address that it printed. Nothing is lost."
