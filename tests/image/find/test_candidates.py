@@ -57,6 +57,7 @@ def test_composites_are_found(shared: Path, name: str, ground: str) -> None:
     assert BELIEVED <= found.confidence <= 1.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "ground"), [("pitcher", "checks"), ("mug", "granite"), ("bulb_clear", "newspaper")]
 )
@@ -78,6 +79,7 @@ def test_what_cannot_be_told_is_refused(shared: Path, name: str, ground: str) ->
     assert candidates[0][1] < BELIEVED
 
 
+@pytest.mark.slow
 def test_the_same_picture_gives_the_same_mask(shared: Path) -> None:
     picture = composite("mug", "wood", 0, shared / "photos").picture
     one, two = find_silhouette(picture), find_silhouette(picture)

@@ -143,6 +143,7 @@ def test_same_picture_same_contour(shared: Path) -> None:
 # --- what is refused -----------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_blank_and_noise_hold_no_object() -> None:
     noise = np.random.default_rng(0)
     for rgb in (
