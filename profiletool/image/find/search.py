@@ -150,7 +150,7 @@ def _chosen(view: View, rgb: NDArray[np.uint8], hint: Hint) -> tuple[Candidate, 
             "a hand seems to hold the object and hide part of it; lay it down, or say with `box`, "
             "`point` or `mask` what to take",
         )
-    return best, hand, doubt_of(all_)
+    return best, hand, doubt_of([best, *(one for one in all_ if one is not best)])
 
 
 def _unsure(found: list[Candidate], rgb: NDArray[np.uint8], why: str) -> Unsure:
